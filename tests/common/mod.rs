@@ -15,7 +15,7 @@ mod shader_parts;
 
 use pollster::FutureExt as _;
 use rasterlab::{
-    accuracy::Visibility,
+    accuracy::{PinnedOptions, Visibility},
     effects::Stack,
     gpu::{Capture, Gpu, Renderer, device::AdapterChoice},
     host,
@@ -131,7 +131,7 @@ impl Drop for Loan {
 
 /// A renderer with the tuning that suits the adapter. Earlier tests may have drawn with it, so it
 /// knows their pipelines.
-pub fn renderer() -> Option<Loan> {
+pub fn loan() -> Option<Loan> {
     let first = gpu()?;
     let mut state = POOL
         .returned
@@ -160,6 +160,46 @@ pub fn options(renderer: &Renderer) -> Vec<Visibility> {
     stress::options(&renderer.gpu().caps)
 }
 
+/// How far a test goes: the few pictures that every run draws, or all of them in `.ci/full`.
+/// Compiling kernels takes most of a test's time, so the few have few kernels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reach {
+    Few,
+    All,
+}
+
+impl Reach {
+    /// The first `few` of a list, or all of it.
+    pub fn of<T>(self, few: usize, list: impl IntoIterator<Item = T>) -> Vec<T> {
+        let count = if self == Reach::Few { few } else { usize::MAX };
+        list.into_iter().take(count).collect()
+    }
+
+    /// One of the [`options`], or all of them.
+    pub fn options(self, renderer: &Renderer) -> Vec<Visibility> {
+        self.of(1, options(renderer))
+    }
+}
+
+/// Two tests of each function of a [`Reach`].
+macro_rules! few_and_all {
+    ($($test:ident),* $(,)?) => {
+        $(mod $test {
+            #[test]
+            fn few() {
+                super::$test(crate::common::Reach::Few);
+            }
+
+            #[test]
+            #[ignore = "slow: .ci/full"]
+            fn all() {
+                super::$test(crate::common::Reach::All);
+            }
+        })*
+    };
+}
+pub(crate) use few_and_all;
+
 /// The exact option that a CPU adapter is quickest on, for what takes long.
 pub fn quick_option(renderer: &Renderer) -> Visibility {
     stress::quick_option(&renderer.gpu().caps)
@@ -187,19 +227,6 @@ pub fn scene(query: &str) -> Arc<Scene> {
 /// A scene within the picture ([`Preset::of_sphere`]).
 pub fn view(scene: &Scene, size: [u32; 2]) -> View {
     Preset::of_sphere(scene, size).view(scene, size)
-}
-
-/// Draws and judges.
-pub fn judged(
-    renderer: &mut Renderer,
-    scene: &Arc<Scene>,
-    view: &View,
-    stack: &Stack,
-    accuracy: &AccuracyRequest,
-) -> (Capture, Verdict) {
-    let capture = captured(renderer, scene, view, stack, accuracy);
-    let verdict = verdict(scene, view, stack, &capture);
-    (capture, verdict)
 }
 
 /// A picture with its verdict.
@@ -254,7 +281,113 @@ pub fn verdict(scene: &Arc<Scene>, view: &View, stack: &Stack, capture: &Capture
     verdict
 }
 
-/// Draws without judging.
+/// What a test asks of a renderer.
+pub trait Draws {
+    /// Draws without judging.
+    fn captured(
+        &mut self,
+        scene: &Arc<Scene>,
+        view: &View,
+        stack: &Stack,
+        accuracy: &AccuracyRequest,
+    ) -> Capture;
+
+    /// Draws and judges.
+    fn judged(
+        &mut self,
+        scene: &Arc<Scene>,
+        view: &View,
+        stack: &Stack,
+        accuracy: &AccuracyRequest,
+    ) -> (Capture, Verdict) {
+        let capture = self.captured(scene, view, stack, accuracy);
+        let verdict = verdict(scene, view, stack, &capture);
+        (capture, verdict)
+    }
+
+    /// Draws, judges and insists on [`exactness`]; `what` names the case.
+    fn exact(
+        &mut self,
+        scene: &Arc<Scene>,
+        view: &View,
+        stack: &Stack,
+        accuracy: &AccuracyRequest,
+        what: &str,
+    ) -> (Capture, Verdict) {
+        let (capture, verdict) = self.judged(scene, view, stack, accuracy);
+        if let Err(faults) = exactness(&verdict.report) {
+            panic!(
+                "{what}: {faults}\n{:?}\n{:?}",
+                verdict.report, capture.frame.counters
+            );
+        }
+        (capture, verdict)
+    }
+
+    /// The picture of a preset, after those that lead up to it, with its verdict.
+    fn judged_preset(
+        &mut self,
+        scene: &Arc<Scene>,
+        preset: &Preset,
+        accuracy: &AccuracyRequest,
+    ) -> (Capture, Verdict);
+}
+
+impl Draws for Renderer {
+    fn captured(
+        &mut self,
+        scene: &Arc<Scene>,
+        view: &View,
+        stack: &Stack,
+        accuracy: &AccuracyRequest,
+    ) -> Capture {
+        stress::captured(self, scene, view, stack, accuracy)
+            .unwrap_or_else(|error| panic!("{error:?}"))
+    }
+
+    fn judged_preset(
+        &mut self,
+        scene: &Arc<Scene>,
+        preset: &Preset,
+        accuracy: &AccuracyRequest,
+    ) -> (Capture, Verdict) {
+        let moments = preset.moments(scene, preset.output.size);
+        self.set_scene(scene)
+            .block_on()
+            .unwrap_or_else(|error| panic!("{}: {error}", scene.name));
+        let capture = self
+            .capture_last(&moments, accuracy)
+            .block_on()
+            .unwrap_or_else(|error| panic!("{}: {error}", scene.name));
+        let (view, stack) = moments.last().expect("a preset shows a moment");
+        let verdict = verdict(scene, view, stack, &capture);
+        (capture, verdict)
+    }
+}
+
+/// What the planner chooses.
+pub fn unpinned() -> AccuracyRequest {
+    AccuracyRequest::default()
+}
+
+pub fn request(pins: PinnedOptions) -> AccuracyRequest {
+    AccuracyRequest {
+        pins,
+        ..AccuracyRequest::default()
+    }
+}
+
+/// The option that every adapter has.
+pub fn split32() -> AccuracyRequest {
+    pinned(Visibility::Split32)
+}
+
+// The same as functions.
+
+pub fn renderer() -> Option<Loan> {
+    loan()
+}
+
 pub fn captured(
     renderer: &mut Renderer,
     scene: &Arc<Scene>,
@@ -262,32 +395,19 @@ pub fn captured(
     stack: &Stack,
     accuracy: &AccuracyRequest,
 ) -> Capture {
-    stress::captured(renderer, scene, view, stack, accuracy)
-        .unwrap_or_else(|error| panic!("{error:?}"))
+    renderer.captured(scene, view, stack, accuracy)
 }
 
-/// The picture of a preset, after those that lead up to it, with its verdict.
-pub fn judged_preset(
+pub fn judged(
     renderer: &mut Renderer,
     scene: &Arc<Scene>,
-    preset: &Preset,
+    view: &View,
+    stack: &Stack,
     accuracy: &AccuracyRequest,
 ) -> (Capture, Verdict) {
-    let moments = preset.moments(scene, preset.output.size);
-    renderer
-        .set_scene(scene)
-        .block_on()
-        .unwrap_or_else(|error| panic!("{}: {error}", scene.name));
-    let capture = renderer
-        .capture_last(&moments, accuracy)
-        .block_on()
-        .unwrap_or_else(|error| panic!("{}: {error}", scene.name));
-    let (view, stack) = moments.last().expect("a preset shows a moment");
-    let verdict = verdict(scene, view, stack, &capture);
-    (capture, verdict)
+    renderer.judged(scene, view, stack, accuracy)
 }
 
-/// Draws, judges and insists on [`exactness`]; `what` names the case.
 pub fn exact(
     renderer: &mut Renderer,
     scene: &Arc<Scene>,
@@ -296,14 +416,16 @@ pub fn exact(
     accuracy: &AccuracyRequest,
     what: &str,
 ) -> (Capture, Verdict) {
-    let (capture, verdict) = judged(renderer, scene, view, stack, accuracy);
-    if let Err(faults) = exactness(&verdict.report) {
-        panic!(
-            "{what}: {faults}\n{:?}\n{:?}",
-            verdict.report, capture.frame.counters
-        );
-    }
-    (capture, verdict)
+    renderer.exact(scene, view, stack, accuracy, what)
+}
+
+pub fn judged_preset(
+    renderer: &mut Renderer,
+    scene: &Arc<Scene>,
+    preset: &Preset,
+    accuracy: &AccuracyRequest,
+) -> (Capture, Verdict) {
+    renderer.judged_preset(scene, preset, accuracy)
 }
 
 // -------- mutants

@@ -12,7 +12,7 @@ use rasterlab::{
         naive::{Naive, Viewport},
     },
     measure::{ErrorReport as Errors, Verdict, error_map::PixelError},
-    plan::{AccuracyRequest, Tuning},
+    plan::Tuning,
     scene::{
         Scene,
         camera::{Camera, Projection},
@@ -165,16 +165,15 @@ fn moved(scene: &Scene, offset: DVec3) -> Scene {
     scene
 }
 
-#[test]
-fn every_viewpoint_is_within_tolerance() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
-    let (options, stack) = (options(&renderer), stack(&["facet", "depth", "lambert"]));
+fn every_viewpoint_is_within_tolerance(reach: Reach) {
+    let Some(mut renderer) = loan() else { return };
+    let (options, stack) = (
+        reach.options(&renderer),
+        stack(&["facet", "depth", "lambert"]),
+    );
     for (turn, (what, scene, view)) in viewpoints().into_iter().enumerate() {
         let option = options[turn % options.len()];
-        let (capture, verdict) = exact(
-            &mut renderer,
+        let (capture, verdict) = renderer.exact(
             &scene,
             &view,
             &stack,
@@ -205,9 +204,7 @@ fn every_viewpoint_is_within_tolerance() {
 
 #[test]
 fn the_beginners_kernel_leaves_thousands_of_holes_in_dense_grids() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     for (query, naive_holes) in [
         ("grid?cell=1", 5_000..40_000),
         ("grid?cell=0.4", 65_000..65_537),
@@ -215,13 +212,7 @@ fn the_beginners_kernel_leaves_thousands_of_holes_in_dense_grids() {
         let scene = scene(query);
         for camera in scene.cameras.iter().map(|camera| camera.pose) {
             let view = camera_view(&scene, &camera, [256, 256]);
-            captured(
-                &mut renderer,
-                &scene,
-                &view,
-                &stack(&[]),
-                &AccuracyRequest::default(),
-            );
+            renderer.captured(&scene, &view, &stack(&[]), &unpinned());
             let key = renderer.key().expect("something was drawn").clone();
             let gpu = renderer.gpu().clone();
             let naive = Naive::new(&gpu, &scene, &view, &key, Viewport::Folded)
@@ -475,14 +466,11 @@ fn map_agrees(verdict: &Verdict) -> Result<(), String> {
     }
 }
 
-#[test]
-fn kernels_with_a_mistake_are_caught() {
-    let Some(mut healthy) = renderer() else {
-        return;
-    };
+fn kernels_with_a_mistake_are_caught(reach: Reach) {
+    let Some(mut healthy) = loan() else { return };
     healthy.set_tuning(GRAPHICS_CARD);
     let mut failures = Vec::new();
-    for mutant in mutants() {
+    for mutant in reach.of(4, mutants()) {
         let Mutant {
             what,
             scene,
@@ -491,8 +479,7 @@ fn kernels_with_a_mistake_are_caught() {
             shown_by: (figure, shown_by),
             ..
         } = &mutant;
-        exact(
-            &mut healthy,
+        healthy.exact(
             scene,
             view,
             &stack(&[]),
@@ -503,7 +490,7 @@ fn kernels_with_a_mistake_are_caught() {
         let library = mutated(mutant.from, mutant.to);
         let mut wrong = Renderer::with_library(healthy.gpu().clone(), library.shaders());
         wrong.set_tuning(GRAPHICS_CARD);
-        let (_, verdict) = judged(&mut wrong, scene, view, &stack(&[]), &pinned(*option));
+        let (_, verdict) = wrong.judged(scene, view, &stack(&[]), &pinned(*option));
         eprintln!(
             "{what}: {}",
             exactness(&verdict.report).err().unwrap_or_default()
@@ -520,3 +507,8 @@ fn kernels_with_a_mistake_are_caught() {
     }
     assert!(failures.is_empty(), "{}", failures.join("\n"));
 }
+
+few_and_all!(
+    every_viewpoint_is_within_tolerance,
+    kernels_with_a_mistake_are_caught,
+);

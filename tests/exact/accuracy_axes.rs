@@ -31,7 +31,7 @@ fn verdict(
 ) -> (Capture, Verdict) {
     let scene = scene(query);
     let view = view(&scene, size);
-    judged(renderer, &scene, &view, &stack(&["lambert"]), &on(pins))
+    renderer.judged(&scene, &view, &stack(&["lambert"]), &on(pins))
 }
 
 /// Pixels whose triangle id is not that of the oracle's picture on its finest grid.
@@ -42,17 +42,14 @@ fn wrong_pixels(
     pins: PinnedOptions,
 ) -> u64 {
     let reference = oracle::render_finest(scene, view, &stack(&[])).expect("a scene that fits");
-    let capture = captured(renderer, scene, view, &stack(&[]), &on(pins));
+    let capture = renderer.captured(scene, view, &stack(&[]), &on(pins));
     compare::triangle_ids(&capture.frame.triangle_id, &reference.triangle_id).different
 }
 
-#[test]
-fn exact_grids_are_exact_given_their_own_corners() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
-    for coverage in [Coverage::Fixed4, Coverage::Fixed12] {
-        for visibility in options(&renderer) {
+fn exact_grids_are_exact_given_their_own_corners(reach: Reach) {
+    let Some(mut renderer) = loan() else { return };
+    for coverage in reach.of(1, [Coverage::Fixed12, Coverage::Fixed4]) {
+        for visibility in reach.options(&renderer) {
             for query in ["sphere?triangles=200", "grid?cell=0.4", "sizes", "near"] {
                 let (_, verdict) = verdict(
                     &mut renderer,
@@ -89,9 +86,7 @@ fn exact_grids_are_exact_given_their_own_corners() {
 
 #[test]
 fn a_finer_grid_is_nearer_the_truth() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let scene = scene("sphere?triangles=20000");
     let view = view(&scene, [320, 240]);
     let [coarse, usual, fine] = [Coverage::Fixed4, Coverage::Fixed8, Coverage::Fixed12]
@@ -104,9 +99,7 @@ fn a_finer_grid_is_nearer_the_truth() {
 
 #[test]
 fn float_edges_leave_doubles_and_the_top_left_rule_mends_most() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     // Corners on 1/2 px: every other sample lies on an edge.
     let query = "grid?cell=4&lattice=2&width=256&height=256";
     let errors = |renderer: &mut Renderer, option: Coverage| {
@@ -126,9 +119,7 @@ fn float_edges_leave_doubles_and_the_top_left_rule_mends_most() {
 
 #[test]
 fn few_bits_of_depth_confuse_layers_that_lie_close() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     // Two plates, the nearer one by half a step of 16 bits and the later one in order.
     let plate = |depth: f32| ([[0, 0], [64 * 256, 0], [0, 64 * 256]], depth);
     let scene = scene_of_meshes(&[triangle_soup_in_units(&[plate(0.5), plate(0.500_004)])]);
@@ -140,16 +131,16 @@ fn few_bits_of_depth_confuse_layers_that_lie_close() {
         DepthFormat::Reversed,
     ]
     .map(|depth| {
-        judged(
-            &mut renderer,
-            &scene,
-            &pixel_view(64, 64),
-            &stack(&[]),
-            &on(PinnedOptions::of(depth)),
-        )
-        .1
-        .report
-        .wrong_nearest
+        renderer
+            .judged(
+                &scene,
+                &pixel_view(64, 64),
+                &stack(&[]),
+                &on(PinnedOptions::of(depth)),
+            )
+            .1
+            .report
+            .wrong_nearest
     });
     assert!(
         wrong[0] > 1000 && wrong[1] == wrong[0],
@@ -160,14 +151,11 @@ fn few_bits_of_depth_confuse_layers_that_lie_close() {
 
 #[test]
 fn affine_attributes_bend_where_a_triangle_runs_into_depth() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let scene = scene("cube-wall");
     let view = view(&scene, [200, 150]);
     let depth = |renderer: &mut Renderer, option: Perspective| {
-        captured(
-            renderer,
+        renderer.captured(
             &scene,
             &view,
             &stack(&["depth"]),
@@ -187,19 +175,11 @@ fn affine_attributes_bend_where_a_triangle_runs_into_depth() {
 
 #[test]
 fn what_is_dropped_instead_of_clipped_is_counted_and_missing() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let scene = scene("near");
     let view = view(&scene, [160, 120]);
     let covered = |renderer: &mut Renderer, option: Clipping| {
-        let capture = captured(
-            renderer,
-            &scene,
-            &view,
-            &stack(&[]),
-            &on(PinnedOptions::of(option)),
-        );
+        let capture = renderer.captured(&scene, &view, &stack(&[]), &on(PinnedOptions::of(option)));
         (capture.frame.covered(), capture.frame.counters.dropped)
     };
     let [drop, near, exact] = [Clipping::Drop, Clipping::Near, Clipping::Exact]
@@ -216,9 +196,7 @@ fn what_is_dropped_instead_of_clipped_is_counted_and_missing() {
 
 #[test]
 fn racy_counting_draws_no_fewer_samples_and_prefix_sums_draw_exactly() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let scene = scene("sphere?triangles=5000");
     let view = view(&scene, [160, 120]);
     let mut drawn = |option: SampleCounter| {
@@ -244,26 +222,16 @@ fn racy_counting_draws_no_fewer_samples_and_prefix_sums_draw_exactly() {
     assert!(racy.0 >= racy.1, "{racy:?}");
 }
 
-#[test]
-fn narrow_sums_of_layers_err_by_steps_of_8_bits_and_say_when_they_are_full() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+fn narrow_sums_of_layers_err_by_steps_of_8_bits_and_say_when_they_are_full(reach: Reach) {
+    let Some(mut renderer) = loan() else { return };
     let xray = stack(&["xray", "lambert"]);
     let scene = scene("knot?tess=8");
     let view = view(&scene, [120, 90]);
-    let wide = captured(
-        &mut renderer,
-        &scene,
-        &view,
-        &xray,
-        &AccuracyRequest::default(),
-    )
-    .frame;
+    let wide = renderer.captured(&scene, &view, &xray, &unpinned()).frame;
     for sums in [XraySums::Packed16, XraySums::Three8] {
-        for visibility in options(&renderer) {
+        for visibility in reach.options(&renderer) {
             let pins = PinnedOptions::of(sums).with(visibility);
-            let narrow = captured(&mut renderer, &scene, &view, &xray, &on(pins)).frame;
+            let narrow = renderer.captured(&scene, &view, &xray, &on(pins)).frame;
             assert_eq!(
                 narrow.layer_sums,
                 wide.layer_sums,
@@ -289,8 +257,7 @@ fn narrow_sums_of_layers_err_by_steps_of_8_bits_and_say_when_they_are_full() {
         .collect();
     let deep = scene_of_meshes(&[triangle_soup_in_units(&sheets)]);
     let view = pixel_view(16, 16);
-    captured(
-        &mut renderer,
+    renderer.captured(
         &deep,
         &view,
         &xray,
@@ -305,24 +272,16 @@ fn narrow_sums_of_layers_err_by_steps_of_8_bits_and_say_when_they_are_full() {
 
 #[test]
 fn baked_parameters_and_trusted_shaders_change_no_pixel() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let scene = scene("teapot?tess=8");
     let view = view(&scene, [160, 120]);
-    let stack = stack(&["dissolve", "facet", "fog", "toon", "outline"]);
-    let usual = captured(
-        &mut renderer,
-        &scene,
-        &view,
-        &stack,
-        &AccuracyRequest::default(),
-    );
+    let stack = stack(&["dissolve", "fog", "outline"]);
+    let usual = renderer.captured(&scene, &view, &stack, &unpinned());
     for pins in [
         PinnedOptions::of(Parameters::Baked),
         PinnedOptions::of(ShaderChecks::Trusted),
     ] {
-        let other = captured(&mut renderer, &scene, &view, &stack, &on(pins));
+        let other = renderer.captured(&scene, &view, &stack, &on(pins));
         assert_eq!(
             usual.frame.triangle_id,
             other.frame.triangle_id,
@@ -337,20 +296,19 @@ fn baked_parameters_and_trusted_shaders_change_no_pixel() {
     }
 }
 
-#[test]
-fn normals_that_a_vertex_effect_turns_are_right_without_checks() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+fn normals_that_a_vertex_effect_turns_are_right_without_checks(reach: Reach) {
+    let Some(mut renderer) = loan() else { return };
     let scene = scene("knot?tess=6");
     let view = view(&scene, [96, 72]);
-    for effects in [
-        &["wobble", "lambert"][..],
-        &["explode", "lambert"],
-        &["inflate", "facet", "lambert"],
-    ] {
-        exact(
-            &mut renderer,
+    for effects in reach.of(
+        1,
+        [
+            &["wobble", "lambert"][..],
+            &["explode", "lambert"],
+            &["inflate", "facet", "lambert"],
+        ],
+    ) {
+        renderer.exact(
             &scene,
             &view,
             &stack(effects),
@@ -362,13 +320,11 @@ fn normals_that_a_vertex_effect_turns_are_right_without_checks() {
 
 #[test]
 fn baking_leaves_the_uniform_out() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let scene = scene("teapot?tess=8");
     let view = view(&scene, [64, 48]);
     let buffers = |renderer: &mut Renderer, pins: PinnedOptions| {
-        captured(renderer, &scene, &view, &stack(&["fog"]), &on(pins));
+        renderer.captured(&scene, &view, &stack(&["fog"]), &on(pins));
         renderer
             .explain()
             .buffers
@@ -385,9 +341,7 @@ fn baking_leaves_the_uniform_out() {
 
 #[test]
 fn a_float_viewport_changes_few_triangle_ids() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let scene = scene("sphere?triangles=20000");
     let view = view(&scene, [320, 240]);
     let [viewport, snapped] = [VertexTransform::Viewport, VertexTransform::Snapped]
@@ -413,14 +367,11 @@ fn moved_px(capture: &Capture, scene: &Scene, view: &View) -> f64 {
 
 #[test]
 fn packed_positions_move_corners_by_half_a_step_at_most() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let scene = scene("teapot?tess=8");
     let view = view(&scene, [320, 240]);
     let mut of = |option: PositionFormat| {
-        let (capture, verdict) = judged(
-            &mut renderer,
+        let (capture, verdict) = renderer.judged(
             &scene,
             &view,
             &stack(&["lambert"]),
@@ -464,9 +415,7 @@ fn packed_positions_move_corners_by_half_a_step_at_most() {
 
 #[test]
 fn neighbors_in_boxes_of_their_own_crack_when_they_are_packed() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     // Two sheets that share a jagged border, the upper one much higher than the lower one.
     let border = |i: u32| {
         [
@@ -492,14 +441,9 @@ fn neighbors_in_boxes_of_their_own_crack_when_they_are_packed() {
     let scene = scene_of_meshes(&[sheet(-1000.0), sheet(300.0)]);
     let view = pixel_view(256, 256);
     let mut empty = |option: PositionFormat| {
-        let frame = captured(
-            &mut renderer,
-            &scene,
-            &view,
-            &stack(&[]),
-            &on(PinnedOptions::of(option)),
-        )
-        .frame;
+        let frame = renderer
+            .captured(&scene, &view, &stack(&[]), &on(PinnedOptions::of(option)))
+            .frame;
         frame
             .triangle_id
             .iter()
@@ -553,16 +497,12 @@ fn modelled_far_away(offset: f64, size: [u32; 2]) -> (std::sync::Arc<Scene>, Vie
     (scene, view)
 }
 
-#[test]
-fn positions_relative_to_the_eye_lose_no_precision_far_away() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+fn positions_relative_to_the_eye_lose_no_precision_far_away(reach: Reach) {
+    let Some(mut renderer) = loan() else { return };
     let (scene, view) = modelled_far_away(1e5, [320, 240]);
-    for visibility in options(&renderer) {
+    for visibility in reach.options(&renderer) {
         let mut of = |option: PositionFormat| {
-            let (capture, verdict) = judged(
-                &mut renderer,
+            let (capture, verdict) = renderer.judged(
                 &scene,
                 &view,
                 &stack(&[]),
@@ -587,17 +527,9 @@ fn positions_relative_to_the_eye_lose_no_precision_far_away() {
 
 #[test]
 fn the_planner_takes_the_eye_out_where_a_scene_lies_far_away() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let mut planned = |scene: &std::sync::Arc<Scene>, view: &View| {
-        captured(
-            &mut renderer,
-            scene,
-            view,
-            &stack(&[]),
-            &AccuracyRequest::default(),
-        );
+        renderer.captured(scene, view, &stack(&[]), &unpinned());
         let why = renderer
             .explain()
             .reasons
@@ -630,13 +562,10 @@ fn the_planner_takes_the_eye_out_where_a_scene_lies_far_away() {
 
 #[test]
 fn culling_is_left_out_where_packed_positions_leave_its_bounds() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let scene = scene("sphere?triangles=5000");
     let view = view(&scene, [160, 120]);
-    let all = captured(
-        &mut renderer,
+    let all = renderer.captured(
         &scene,
         &view,
         &stack(&[]),
@@ -647,8 +576,7 @@ fn culling_is_left_out_where_packed_positions_leave_its_bounds() {
         (PositionFormat::Packed16, Culling::None),
         (PositionFormat::Relative, Culling::Frustum),
     ] {
-        let capture = captured(
-            &mut renderer,
+        let capture = renderer.captured(
             &scene,
             &view,
             &stack(&[]),
@@ -668,16 +596,13 @@ fn culling_is_left_out_where_packed_positions_leave_its_bounds() {
 
 #[test]
 fn strict_vertices_subtract_the_eye_to_the_bit_and_refuse_packed_positions() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let (scene, view) = modelled_far_away(1e6, [96, 72]);
     let strict = |option: PositionFormat| AccuracyRequest {
         tier: Tier::Strict,
         ..on(PinnedOptions::of(option))
     };
-    let capture = captured(
-        &mut renderer,
+    let capture = renderer.captured(
         &scene,
         &view,
         &stack(&[]),
@@ -716,13 +641,7 @@ fn packed_positions_take_their_bytes_only_while_they_are_used() {
     let scene = scene("sphere?triangles=5000");
     let view = view(&scene, [64, 48]);
     let mut bytes = |option: PositionFormat| {
-        captured(
-            &mut renderer,
-            &scene,
-            &view,
-            &stack(&[]),
-            &on(PinnedOptions::of(option)),
-        );
+        renderer.captured(&scene, &view, &stack(&[]), &on(PinnedOptions::of(option)));
         let note = renderer
             .explain()
             .buffers
@@ -757,9 +676,7 @@ fn packed_positions_take_their_bytes_only_while_they_are_used() {
 
 #[test]
 fn packed_positions_refuse_what_stored_ones_refuse_and_deformed_meshes() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let good = [[4.0, 4.0, 0.25], [60.0, 8.0, 0.5], [8.0, 60.0, 0.75f32]];
     let mut positions = good.to_vec();
     for (corner, value) in [(0, f32::NAN), (1, f32::INFINITY), (2, f32::MAX)] {
@@ -769,8 +686,7 @@ fn packed_positions_refuse_what_stored_ones_refuse_and_deformed_meshes() {
     }
     let scene = scene_of_meshes(&[rasterlab_fuzz::stress::scenes::triangle_soup(positions)]);
     for option in [PositionFormat::Packed10, PositionFormat::Packed16] {
-        let (capture, verdict) = judged(
-            &mut renderer,
+        let (capture, verdict) = renderer.judged(
             &scene,
             &pixel_view(64, 64),
             &stack(&[]),
@@ -813,21 +729,14 @@ fn packed_positions_refuse_what_stored_ones_refuse_and_deformed_meshes() {
 
 #[test]
 fn scaled_pictures_are_exact_in_their_own_pixels_and_shown_at_the_size_that_was_asked_for() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let scene = scene("teapot?tess=8");
     // Neither side is a multiple of four.
     let (size, view) = ([161, 122], view(&scene, [161, 122]));
-    let effects = stack(&["lambert", "wireframe", "outline"]);
+    let effects = stack(&["lambert", "outline"]);
     for option in RenderScale::ALL.iter().copied() {
-        let (capture, verdict) = judged(
-            &mut renderer,
-            &scene,
-            &view,
-            &effects,
-            &on(PinnedOptions::of(option)),
-        );
+        let (capture, verdict) =
+            renderer.judged(&scene, &view, &effects, &on(PinnedOptions::of(option)));
         assert_eq!(exactness(&verdict.report), Ok(()), "{}", option.name());
         let drawn = &capture.frame;
         let side = |side: u32| (f64::from(side) * option.factor()).ceil() as u32;
@@ -888,9 +797,7 @@ fn scaled_pictures_are_exact_in_their_own_pixels_and_shown_at_the_size_that_was_
 
 #[test]
 fn more_samples_come_nearer_to_eight_by_eight() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let scene = scene("teapot?tess=8");
     let view = view(&scene, [96, 72]);
     let lit = stack(&["lambert"]);
@@ -903,14 +810,9 @@ fn more_samples_come_nearer_to_eight_by_eight() {
     let rms: Vec<f64> = RenderScale::ALL
         .iter()
         .map(|option| {
-            let picture = captured(
-                &mut renderer,
-                &scene,
-                &view,
-                &lit,
-                &on(PinnedOptions::of(*option)),
-            )
-            .into_shown();
+            let picture = renderer
+                .captured(&scene, &view, &lit, &on(PinnedOptions::of(*option)))
+                .into_shown();
             compare::pictures(&picture.color, &smooth, 0).rms
         })
         .collect();
@@ -924,9 +826,7 @@ fn more_samples_come_nearer_to_eight_by_eight() {
 
 #[test]
 fn a_scale_that_the_adapter_cannot_hold_says_what_it_would_draw() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let scene = scene("teapot?tess=4");
     let side = renderer.gpu().caps.max_texture_side;
     renderer.set_scene(&scene).block_on().unwrap();
@@ -946,8 +846,7 @@ fn a_scale_that_the_adapter_cannot_hold_says_what_it_would_draw() {
     );
     assert!(refused.is_unsupported(), "{refused}");
     assert_eq!(refused.to_string(), sentence);
-    captured(
-        &mut renderer,
+    renderer.captured(
         &scene,
         &pixel_view(16, 8),
         &stack(&[]),
@@ -956,8 +855,7 @@ fn a_scale_that_the_adapter_cannot_hold_says_what_it_would_draw() {
 }
 
 /// The planner's estimate from some triangles, compared with what the queues of the frame counted.
-#[test]
-fn predicted_sizes_are_those_that_the_queues_count() {
+fn predicted_sizes_are_those_that_the_queues_count(reach: Reach) {
     let Some(gpu) = gpu() else { return };
     // Every path is taken, as on a card.
     let tuning = rasterlab::plan::Tuning {
@@ -966,23 +864,20 @@ fn predicted_sizes_are_those_that_the_queues_count() {
         specialized: false,
         ..gpu.caps.tuning()
     };
-    for (query, looked_at_all) in [
-        ("teapot?tess=8", false),
-        ("sphere?triangles=200", true),
-        ("sphere?triangles=20000", false),
-        ("knot?tess=4", true),
-        ("cube-wall", true),
-    ] {
+    for (query, looked_at_all) in reach.of(
+        2,
+        [
+            ("teapot?tess=8", false),
+            ("sphere?triangles=200", true),
+            ("sphere?triangles=20000", false),
+            ("knot?tess=4", true),
+            ("cube-wall", true),
+        ],
+    ) {
         let mut renderer = Renderer::new(gpu.clone());
         renderer.set_tuning(tuning);
         let scene = scene(query);
-        captured(
-            &mut renderer,
-            &scene,
-            &view(&scene, [640, 480]),
-            &stack(&[]),
-            &AccuracyRequest::default(),
-        );
+        renderer.captured(&scene, &view(&scene, [640, 480]), &stack(&[]), &unpinned());
         let sizes = renderer.explain().sizes.expect("a picture was drawn");
         assert_eq!(sizes.triangles, scene.triangle_count());
         assert_eq!(
@@ -1001,9 +896,7 @@ fn predicted_sizes_are_those_that_the_queues_count() {
 
 #[test]
 fn what_no_kernel_can_draw_is_one_sentence() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let scene = scene("teapot?tess=8");
     renderer.set_scene(&scene).block_on().unwrap();
     let mut refused = |size: [u32; 2], names: &[&str], pins: PinnedOptions| {
@@ -1040,3 +933,11 @@ fn the_finest_grid_fits_the_picture() {
         [12, 12, 11, 10, 8]
     );
 }
+
+few_and_all!(
+    exact_grids_are_exact_given_their_own_corners,
+    narrow_sums_of_layers_err_by_steps_of_8_bits_and_say_when_they_are_full,
+    normals_that_a_vertex_effect_turns_are_right_without_checks,
+    predicted_sizes_are_those_that_the_queues_count,
+    positions_relative_to_the_eye_lose_no_precision_far_away,
+);

@@ -81,17 +81,10 @@ const GRAPHICS_CARD: Tuning = Tuning {
     specialized: true,
 };
 
-#[test]
-fn every_exact_backend_gives_the_same_triangle_ids_and_depth_keys() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
-    let options = options(&renderer);
-    if !options.contains(&Visibility::Packed64) {
-        eprintln!(
-            "NOT RUN: this adapter has no 64-bit atomics, so there is no packed64 to compare with"
-        );
-    }
+fn every_exact_backend_gives_the_same_triangle_ids_and_depth_keys(reach: Reach) {
+    let Some(mut renderer) = loan() else { return };
+    let options = reach.of(2, options(&renderer));
+    assert!(options.len() > 1, "there is nothing to compare with");
     let scenes = scenes_with_views(&[
         "knot?tess=24",
         "globe?tess=6",
@@ -104,7 +97,7 @@ fn every_exact_backend_gives_the_same_triangle_ids_and_depth_keys() {
     renderer.set_tuning(GRAPHICS_CARD);
     // All scenes share the kernels of an option.
     let mut draw = |(scene, view): &(Arc<Scene>, View), option| {
-        captured(&mut renderer, scene, view, &stack, &pinned(option))
+        renderer.captured(scene, view, &stack, &pinned(option))
     };
     let split: Vec<Capture> = scenes
         .iter()
@@ -124,9 +117,7 @@ fn every_exact_backend_gives_the_same_triangle_ids_and_depth_keys() {
 
 #[test]
 fn a_picture_is_the_same_whatever_the_queues_of_the_one_before_held() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     // Every triangle whose box has more than one pixel waits in a queue.
     let tuning = Tuning {
         max_small_samples: 1,
@@ -167,20 +158,11 @@ fn a_picture_is_the_same_whatever_the_queues_of_the_one_before_held() {
 
 #[test]
 fn a_picture_of_large_triangles_is_the_same_after_one_with_more_and_one_with_fewer_of_them() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let ((scene, view), stack) = (hall(), stack(&["lambert"]));
     // The same hall from afar has few large triangles or none.
     let far = crate::common::view(&scene, [16, 12]);
-    let fresh = captured(
-        &mut renderer,
-        &scene,
-        &view,
-        &stack,
-        &AccuracyRequest::default(),
-    )
-    .frame;
+    let fresh = renderer.captured(&scene, &view, &stack, &unpinned()).frame;
     for tuning in [
         GRAPHICS_CARD,
         Tuning {
@@ -196,7 +178,7 @@ fn a_picture_of_large_triangles_is_the_same_after_one_with_more_and_one_with_few
         renderer.set_scene(&scene).block_on().expect("it fits");
         for (turn, view) in [&view, &far, &view, &far, &view].into_iter().enumerate() {
             let frame = renderer
-                .capture(view, &stack, &AccuracyRequest::default())
+                .capture(view, &stack, &unpinned())
                 .block_on()
                 .expect("it draws")
                 .frame;
@@ -220,37 +202,27 @@ fn cut_key(key: u32, triangles: u64) -> u32 {
     }
 }
 
-#[test]
-fn packed32_loses_depth_and_nothing_else() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+fn packed32_loses_depth_and_nothing_else(reach: Reach) {
+    let Some(mut renderer) = loan() else { return };
     let mut lost = 0;
-    for query in [
-        "knot?tess=24",
-        "field?count=27&triangles=200",
-        "grid?cell=0.4",
-        "sizes",
-        "stack",
-        "near",
-    ] {
+    for query in reach.of(
+        1,
+        [
+            "knot?tess=24",
+            "field?count=27&triangles=200",
+            "grid?cell=0.4",
+            "sizes",
+            "stack",
+            "near",
+        ],
+    ) {
         let scene = scene(query);
         let view = view(&scene, SIZE);
-        let reference = captured(
-            &mut renderer,
-            &scene,
-            &view,
-            &stack(&[]),
-            &pinned(Visibility::Split32),
-        )
-        .frame;
-        let (capture, verdict) = judged(
-            &mut renderer,
-            &scene,
-            &view,
-            &stack(&[]),
-            &pinned(Visibility::Packed32),
-        );
+        let reference = renderer
+            .captured(&scene, &view, &stack(&[]), &split32())
+            .frame;
+        let (capture, verdict) =
+            renderer.judged(&scene, &view, &stack(&[]), &pinned(Visibility::Packed32));
         let (frame, errors) = (&capture.frame, &verdict.report);
         assert_eq!(
             [errors.holes, errors.double_hits, errors.depth_without_id],
@@ -312,26 +284,13 @@ fn packed32_loses_depth_and_nothing_else() {
 
 #[test]
 fn a_race_may_lose_the_nearest_and_nothing_else() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     for query in ["sphere?triangles=5000", "stack?layers=40", "near", "sizes"] {
         let scene = scene(query);
         let view = view(&scene, SIZE);
-        let reference = captured(
-            &mut renderer,
-            &scene,
-            &view,
-            &stack(&[]),
-            &pinned(Visibility::Split32),
-        );
-        let (capture, verdict) = judged(
-            &mut renderer,
-            &scene,
-            &view,
-            &stack(&[]),
-            &pinned(Visibility::Race),
-        );
+        let reference = renderer.captured(&scene, &view, &stack(&[]), &split32());
+        let (capture, verdict) =
+            renderer.judged(&scene, &view, &stack(&[]), &pinned(Visibility::Race));
         let errors = &verdict.report;
         assert_eq!(
             [errors.holes, errors.double_hits, errors.depth_without_id],
@@ -353,28 +312,16 @@ fn a_race_may_lose_the_nearest_and_nothing_else() {
 
 /// Returns true if drawing `stack` is refused.
 fn is_refused(renderer: &mut Renderer, view: &View, stack: &Stack) -> bool {
-    renderer
-        .draw(view, stack, &AccuracyRequest::default())
-        .block_on()
-        .is_err()
+    renderer.draw(view, stack, &unpinned()).block_on().is_err()
 }
 
 #[test]
 fn a_refused_frame_leaves_the_next_one_whole() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let (scene, first) = hall();
     let other = view(&scene, [160, 90]);
     let accuracy = AccuracyRequest::default();
-    exact(
-        &mut renderer,
-        &scene,
-        &first,
-        &Stack::default(),
-        &accuracy,
-        "before",
-    );
+    renderer.exact(&scene, &first, &Stack::default(), &accuracy, "before");
     let mut dense = Stack::default();
     let dots = dense.enable(&dots::EFFECT);
     let spacing = dots.effect.field("spacing_m").expect("dots have a spacing");
@@ -385,8 +332,7 @@ fn a_refused_frame_leaves_the_next_one_whole() {
         is_refused(&mut renderer, &other, &dense),
         "so many dots are drawn"
     );
-    exact(
-        &mut renderer,
+    renderer.exact(
         &scene,
         &other,
         &Stack::default(),
@@ -397,9 +343,7 @@ fn a_refused_frame_leaves_the_next_one_whole() {
 
 #[test]
 fn the_early_load_does_not_show() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     for query in ["near", "stack?layers=60&gap=0.5", "sizes"] {
         let scene = scene(query);
         let view = view(&scene, SIZE);
@@ -408,23 +352,14 @@ fn the_early_load_does_not_show() {
                 early_load,
                 ..GRAPHICS_CARD
             });
-            captured(
-                &mut renderer,
-                &scene,
-                &view,
-                &stack(&["lambert"]),
-                &pinned(Visibility::Split32),
-            )
+            renderer.captured(&scene, &view, &stack(&["lambert"]), &split32())
         });
         assert_same(&with.frame, &without.frame, query);
     }
 }
 
-#[test]
-fn blocks_that_hide_what_lies_behind_do_not_show() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+fn blocks_that_hide_what_lies_behind_do_not_show(reach: Reach) {
+    let Some(mut renderer) = loan() else { return };
     for query in [
         "near",
         "stack?layers=60&gap=0.5",
@@ -433,19 +368,13 @@ fn blocks_that_hide_what_lies_behind_do_not_show() {
     ] {
         let scene = scene(query);
         let view = view(&scene, SIZE);
-        for option in options(&renderer) {
+        for option in reach.options(&renderer) {
             let [with, without] = [true, false].map(|hides_blocks| {
                 renderer.set_tuning(Tuning {
                     hides_blocks,
                     ..GRAPHICS_CARD
                 });
-                captured(
-                    &mut renderer,
-                    &scene,
-                    &view,
-                    &stack(&["lambert"]),
-                    &pinned(option),
-                )
+                renderer.captured(&scene, &view, &stack(&["lambert"]), &pinned(option))
             });
             let what = format!("{query} {}", option.name());
             assert_same(&with.frame, &without.frame, &what);
@@ -456,27 +385,18 @@ fn blocks_that_hide_what_lies_behind_do_not_show() {
 
 /// A picture that fills every pixel, then one that leaves most empty; buffers that a pass clears
 /// are as empty as those that are cleared before it.
-#[test]
-fn a_picture_begins_with_nothing_of_the_one_before() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+fn a_picture_begins_with_nothing_of_the_one_before(reach: Reach) {
+    let Some(mut renderer) = loan() else { return };
     let (full, empty) = (hall(), scene("sphere?triangles=200"));
     let aside = view(&empty, SIZE);
-    for option in options(&renderer) {
+    for option in reach.options(&renderer) {
         let [cleared_by_passes, cleared_before] = [true, false].map(|clears_in_passes| {
             renderer.set_tuning(Tuning {
                 clears_in_passes,
                 ..GRAPHICS_CARD
             });
-            captured(
-                &mut renderer,
-                &full.0,
-                &full.1,
-                &stack(&[]),
-                &pinned(option),
-            );
-            captured(&mut renderer, &empty, &aside, &stack(&[]), &pinned(option))
+            renderer.captured(&full.0, &full.1, &stack(&[]), &pinned(option));
+            renderer.captured(&empty, &aside, &stack(&[]), &pinned(option))
         });
         assert!(
             cleared_before.frame.triangle_id.contains(&NO_TRIANGLE),
@@ -495,3 +415,10 @@ fn a_picture_begins_with_nothing_of_the_one_before() {
         );
     }
 }
+
+few_and_all!(
+    every_exact_backend_gives_the_same_triangle_ids_and_depth_keys,
+    blocks_that_hide_what_lies_behind_do_not_show,
+    a_picture_begins_with_nothing_of_the_one_before,
+    packed32_loses_depth_and_nothing_else,
+);

@@ -10,7 +10,7 @@ use rasterlab::{
     measure::compare::pictures,
     oracle,
     plan::{AccuracyRequest, Tier, Tuning},
-    preset::{Clock, Output, Preset, Visibility},
+    preset::{Clock, Output, Preset},
     scene::{Background, view::View},
 };
 use rasterlab_fuzz::stress::culling::walk;
@@ -71,9 +71,7 @@ fn with(names: &[&str], set: &[(&str, &str, f64)]) -> Stack {
 
 #[test]
 fn empty_pixels_are_the_bytes_of_their_row_with_every_option_and_tuning() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let scene = scene("teapot?tess=4");
     let view = view_of(&scene, GRADIENT);
     for (tuning, option) in tunings()
@@ -81,8 +79,7 @@ fn empty_pixels_are_the_bytes_of_their_row_with_every_option_and_tuning() {
         .zip(options(&renderer).into_iter().cycle())
     {
         renderer.set_tuning(tuning);
-        let (capture, _) = exact(
-            &mut renderer,
+        let (capture, _) = renderer.exact(
             &scene,
             &view,
             &stack(&["lambert"]),
@@ -112,8 +109,7 @@ fn empty_pixels_are_the_bytes_of_their_row_with_every_option_and_tuning() {
 /// Where the resolve visits listed tiles, the others keep what they show. A model that moves,
 /// another size, another background and effects that visit every pixel must leave nothing of the
 /// pictures before.
-#[test]
-fn tiles_that_a_model_leaves_show_the_background_again() {
+fn tiles_that_a_model_leaves_show_the_background_again(reach: Reach) {
     let Some(gpu) = gpu() else { return };
     let tuning = Tuning {
         listed_tiles: true,
@@ -140,7 +136,7 @@ fn tiles_that_a_model_leaves_show_the_background_again() {
     let mut rng = Rng(36);
     let mut renderer = fresh();
     let (mut left, mut before) = (0, Vec::new());
-    for turn in 0..60 {
+    for turn in reach.of(24, 0..60) {
         // Most pictures differ from the one before by the camera alone.
         let [at, which, behind] = [turn / 20, turn / 3, turn / 7];
         let (scene, stack) = (
@@ -153,22 +149,8 @@ fn tiles_that_a_model_leaves_show_the_background_again() {
             background: backgrounds[behind % 2],
             ..moved
         };
-        let drawn = captured(
-            &mut renderer,
-            scene,
-            &view,
-            stack,
-            &AccuracyRequest::default(),
-        )
-        .frame;
-        let alone = captured(
-            &mut fresh(),
-            scene,
-            &view,
-            stack,
-            &AccuracyRequest::default(),
-        )
-        .frame;
+        let drawn = renderer.captured(scene, &view, stack, &unpinned()).frame;
+        let alone = captured(&mut fresh(), scene, &view, stack, &unpinned()).frame;
         assert!(
             drawn.color == alone.color,
             "turn {turn}: another picture than that of a renderer that drew nothing before"
@@ -185,16 +167,14 @@ fn tiles_that_a_model_leaves_show_the_background_again() {
         }
         before = covered;
     }
-    assert!(left > 5000, "models left only {left} pixels");
+    assert!(left > 1000, "models left only {left} pixels");
 }
 
 /// A background of one color needs no rows: the buffers and the picture are those without a
 /// gradient.
 #[test]
 fn a_gradient_between_equal_colors_is_one_color() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let scene = scene("teapot?tess=4");
     let color = [0.3, 0.2, 0.05, 1.0];
     let output = Output {
@@ -204,12 +184,11 @@ fn a_gradient_between_equal_colors_is_one_color() {
     };
     assert_eq!(output.backdrop(), Background::from(color));
     let mut draw = |background: Background| {
-        let capture = captured(
-            &mut renderer,
+        let capture = renderer.captured(
             &scene,
             &view_of(&scene, background),
             &stack(&["xray"]),
-            &pinned(Visibility::Split32),
+            &split32(),
         );
         capture.frame.color
     };
@@ -232,32 +211,28 @@ fn readers() -> Vec<Stack> {
     ]
 }
 
-#[test]
-fn what_reads_the_background_reads_that_of_its_row() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+fn what_reads_the_background_reads_that_of_its_row(reach: Reach) {
+    let Some(mut renderer) = loan() else { return };
     let scene = scene("knot?tess=8");
     let view = view_of(&scene, GRADIENT);
-    for listed in [false, true] {
+    for listed in reach.of(1, [true, false]) {
         renderer.set_tuning(
             tunings()
                 .into_iter()
                 .find(|tuning| tuning.listed_tiles == listed)
                 .expect("a tuning"),
         );
-        for stack in readers() {
+        for stack in reach.of(4, readers()) {
             let names: Vec<&str> = stack
                 .0
                 .iter()
                 .map(|enabled| enabled.effect.name.as_str())
                 .collect();
-            exact(
-                &mut renderer,
+            renderer.exact(
                 &scene,
                 &view,
                 &stack,
-                &pinned(Visibility::Split32),
+                &split32(),
                 &format!("{names:?}, listed tiles: {listed}"),
             );
         }
@@ -292,11 +267,8 @@ fn spinning() -> Preset {
     preset
 }
 
-#[test]
-fn trails_start_from_the_gradient_and_fade_to_it() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+fn trails_start_from_the_gradient_and_fade_to_it(reach: Reach) {
+    let Some(mut renderer) = loan() else { return };
     let scene = scene("knot?tess=6");
     let reference =
         oracle::render_sequence(&scene, &spinning().moments(&scene, SIZE)).expect("it is drawn");
@@ -305,8 +277,8 @@ fn trails_start_from_the_gradient_and_fade_to_it() {
             && reference.color[*i] != row(*i as u32 / SIZE[0], SIZE[1])
     };
     assert!((0..reference.color.len()).filter(trail).count() > 200);
-    for option in options(&renderer) {
-        let (capture, verdict) = judged_preset(&mut renderer, &scene, &spinning(), &pinned(option));
+    for option in reach.options(&renderer) {
+        let (capture, verdict) = renderer.judged_preset(&scene, &spinning(), &pinned(option));
         exactness(&verdict.report).unwrap_or_else(|why| panic!("{}: {why}", option.name()));
         let far = pictures(&capture.frame.color, &reference.color, 1);
         assert!(far.pixels_over_tolerance <= 2, "{}: {far:?}", option.name());
@@ -315,9 +287,7 @@ fn trails_start_from_the_gradient_and_fade_to_it() {
 
 #[test]
 fn anti_aliasing_averages_rows_of_the_larger_picture() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let scene = scene("teapot?tess=4");
     let view = view_of(&scene, GRADIENT);
     // A mean is weighted by opacity, so it may leave the row of the shown picture by a little.
@@ -331,13 +301,7 @@ fn anti_aliasing_averages_rows_of_the_larger_picture() {
             pins: PinnedOptions::of(scale),
             ..AccuracyRequest::default()
         };
-        let (capture, verdict) = judged(
-            &mut renderer,
-            &scene,
-            &view,
-            &stack(&["lambert"]),
-            &accuracy,
-        );
+        let (capture, verdict) = renderer.judged(&scene, &view, &stack(&["lambert"]), &accuracy);
         assert!(
             verdict.report.max_color_delta <= 1,
             "{scale:?}: {:?}",
@@ -358,7 +322,7 @@ fn anti_aliasing_averages_rows_of_the_larger_picture() {
 
 #[test]
 fn a_kernel_that_reads_another_row_is_caught() {
-    let Some(healthy) = renderer() else { return };
+    let Some(healthy) = loan() else { return };
     let gpu = healthy.gpu().clone();
     let scene = scene("knot?tess=8");
     let view = view_of(&scene, GRADIENT);
@@ -376,13 +340,7 @@ fn a_kernel_that_reads_another_row_is_caught() {
             stack(&["lambert"]),
             with(&["xray"], &[("xray", "opacity", 0.4)]),
         ] {
-            let (_, verdict) = judged(
-                &mut wrong,
-                &scene,
-                &view,
-                &stack,
-                &pinned(Visibility::Split32),
-            );
+            let (_, verdict) = wrong.judged(&scene, &view, &stack, &split32());
             assert!(
                 verdict.report.max_color_delta > 1,
                 "{to:?}: {:?}",
@@ -416,15 +374,10 @@ fn a_list_that_forgets_tiles_is_caught() {
         views
             .iter()
             .map(|view| {
-                captured(
-                    &mut renderer,
-                    &scene,
-                    view,
-                    stack,
-                    &AccuracyRequest::default(),
-                )
-                .frame
-                .color
+                renderer
+                    .captured(&scene, view, stack, &unpinned())
+                    .frame
+                    .color
             })
             .collect()
     };
@@ -442,3 +395,9 @@ fn a_list_that_forgets_tiles_is_caught() {
         "tiles of the picture before are not missed"
     );
 }
+
+few_and_all!(
+    tiles_that_a_model_leaves_show_the_background_again,
+    what_reads_the_background_reads_that_of_its_row,
+    trails_start_from_the_gradient_and_fade_to_it,
+);

@@ -11,19 +11,21 @@ use rasterlab::{
     preset_file::{self, Folders},
 };
 
+use crate::common::{Reach, few_and_all};
+
 /// Presets that together have nearly every effect, particles, shadows, layers, textures, skins and
 /// a background of two colors.
 const PRESETS: [&str; 14] = [
+    "hero-xray",
+    "particles",
     "boxes",
     "dither",
     "explode",
     "facet-radial",
     "hero-swarm",
     "hero-walk",
-    "hero-xray",
     "inflate",
     "outline",
-    "particles",
     "plinth",
     "shadow",
     "smear",
@@ -65,8 +67,9 @@ fn regions_of_draws(gpu: &std::sync::Arc<Gpu>, name: &str, times: usize, tuning:
     code_regions().saturating_sub(before)
 }
 
-#[test]
-fn drawing_again_compiles_nothing() {
+fn drawing_again_compiles_nothing(reach: Reach) {
+    let test = format!("{reach:?}").to_lowercase();
+    let presets = reach.of(2, PRESETS);
     let gpu = Gpu::open(&AdapterChoice::Any)
         .block_on()
         .expect("an adapter");
@@ -78,7 +81,8 @@ fn drawing_again_compiles_nothing() {
         let child = Command::new(std::env::current_exe().expect("its path"))
             .args([
                 "--exact",
-                "compiled_once::drawing_again_compiles_nothing",
+                &format!("compiled_once::drawing_again_compiles_nothing::{test}"),
+                "--include-ignored",
                 "--nocapture",
             ])
             .env(CHILD, "1")
@@ -97,7 +101,7 @@ fn drawing_again_compiles_nothing() {
         tuning.stored_uniforms,
         "lavapipe binds enough storage buffers"
     );
-    for name in PRESETS {
+    for &name in &presets {
         assert_eq!(
             regions_of_draws(&gpu, name, 4, tuning),
             0,
@@ -112,8 +116,10 @@ fn drawing_again_compiles_nothing() {
         };
         let compiles = |name: &&str| regions_of_draws(&gpu, name, 4, untuned) > 0;
         assert!(
-            PRESETS.iter().any(compiles),
+            presets.iter().any(compiles),
             "uniforms in conditions compile nothing: the test sees nothing"
         );
     }
 }
+
+few_and_all!(drawing_again_compiles_nothing,);

@@ -157,14 +157,14 @@ fn whole(renderer: &Renderer, scene: &Arc<Scene>, view: &View, pins: PinnedOptio
     let mut whole = whole
         .lock()
         .unwrap_or_else(|poisoned| poisoned.into_inner());
-    captured(
-        &mut whole,
-        scene,
-        view,
-        &stack(&["lambert"]),
-        &on(pins.with(Culling::None)),
-    )
-    .frame
+    whole
+        .captured(
+            scene,
+            view,
+            &stack(&["lambert"]),
+            &on(pins.with(Culling::None)),
+        )
+        .frame
 }
 
 /// AccuracyOptions that two passes can hide behind.
@@ -175,16 +175,13 @@ fn hiding(renderer: &Renderer) -> Vec<PinnedOptions> {
         .collect()
 }
 
-#[test]
-fn two_passes_lose_nothing_on_any_walk() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+fn two_passes_lose_nothing_on_any_walk(reach: Reach) {
+    let Some(mut renderer) = loan() else { return };
     let mut rng = Rng(11);
     for (what, scene) in scenes().into_iter().filter(|(what, _)| {
         ["field?count=64&triangles=600", "near", "mirrored", "grown"].contains(&&**what)
     }) {
-        for (i, pins) in hiding(&renderer).into_iter().enumerate() {
+        for (i, pins) in reach.of(1, hiding(&renderer)).into_iter().enumerate() {
             let tuning = both_tunings(&renderer)[i % 2];
             renderer.set_tuning(tuning);
             let views = walk(&scene, &mut rng, 8, SIZE);
@@ -198,11 +195,8 @@ fn two_passes_lose_nothing_on_any_walk() {
     }
 }
 
-#[test]
-fn another_scene_another_size_and_a_pause_leave_nothing_stale() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+fn another_scene_another_size_and_a_pause_leave_nothing_stale(reach: Reach) {
+    let Some(mut renderer) = loan() else { return };
     let mut rng = Rng(5);
     let scenes = [
         scene("field?count=64&triangles=400"),
@@ -213,7 +207,7 @@ fn another_scene_another_size_and_a_pause_leave_nothing_stale() {
         let scene = &scenes[turn % 3];
         let size = [[160, 120], [65, 63], [1, 1], [200, 8]][turn % 4];
         let views = walk(scene, &mut rng, 2, size);
-        for pins in hiding(&renderer) {
+        for pins in reach.of(1, hiding(&renderer)) {
             followed(&mut renderer, scene, &views, pins)
                 .unwrap_or_else(|why| panic!("turn {turn}: {why}"));
             drawn(&mut renderer, &views[0], pins.with(Culling::Frustum));
@@ -283,9 +277,7 @@ fn grown() -> Arc<Scene> {
 
 #[test]
 fn backs_that_the_snap_turns_over_are_not_left_out() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let (scene, views) = dust();
     let shown: usize = views
         .iter()
@@ -307,16 +299,15 @@ fn backs_that_the_snap_turns_over_are_not_left_out() {
     }
 }
 
-#[test]
-fn mistakes_of_culling_are_seen() {
-    let Some(healthy) = renderer() else { return };
+fn mistakes_of_culling_are_seen(reach: Reach) {
+    let Some(healthy) = loan() else { return };
     let gpu = healthy.gpu().clone();
     drop(healthy);
     let split = |option: Culling| PinnedOptions::of(option).with(Visibility::Split32);
     let field = scene("field?count=64&triangles=600");
     let through = walk(&field, &mut Rng(11), 8, SIZE);
     let mut failures = Vec::new();
-    for (what, from, to, option, scene, views) in [
+    let mistakes = [
         (
             "cones are too narrow",
             "let across = sqrt(",
@@ -365,7 +356,8 @@ fn mistakes_of_culling_are_seen() {
             &field,
             &through,
         ),
-    ] {
+    ];
+    for (what, from, to, option, scene, views) in reach.of(2, mistakes) {
         let library = mutated(from, to);
         let mut wrong = Renderer::with_library(gpu.clone(), library.shaders());
         match followed(&mut wrong, scene, views, split(option)) {
@@ -376,11 +368,8 @@ fn mistakes_of_culling_are_seen() {
     assert!(failures.is_empty(), "{}", failures.join("\n"));
 }
 
-#[test]
-fn more_meshlets_than_one_row_of_workgroups_are_all_drawn() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+fn more_meshlets_than_one_row_of_workgroups_are_all_drawn(reach: Reach) {
+    let Some(mut renderer) = loan() else { return };
     const SIDE: u32 = 257;
     // One triangle over one sample, 66,049 times: as many meshlets, and more than 65,535
     // workgroups.
@@ -399,8 +388,8 @@ fn more_meshlets_than_one_row_of_workgroups_are_all_drawn() {
     });
     renderer.set_scene(&scene).block_on().expect("it fits");
     let view = pixel_view(260, 260);
-    for option in [Culling::Frustum, Culling::TwoPass] {
-        for visibility in options(&renderer) {
+    for option in reach.of(1, [Culling::TwoPass, Culling::Frustum]) {
+        for visibility in reach.options(&renderer) {
             let (culled, stats) = drawn(
                 &mut renderer,
                 &view,
@@ -541,10 +530,9 @@ fn only_an_option_that_culls_has_passes_and_buffers_for_it() {
     }
 }
 
-#[test]
-fn a_picture_that_cannot_be_culled_says_why_and_is_drawn() {
+fn a_picture_that_cannot_be_culled_says_why_and_is_drawn(reach: Reach) {
     let query = "field?count=8&triangles=200";
-    for (effects, visibility, got) in [
+    let refusals = [
         (
             &["explode"][..],
             Visibility::Split32,
@@ -581,7 +569,8 @@ fn a_picture_that_cannot_be_culled_says_why_and_is_drawn() {
             "frustum instead of two-pass: packed32",
         ),
         (&["dissolve"], Visibility::Split32, "two-pass: pinned"),
-    ] {
+    ];
+    for (effects, visibility, got) in reach.of(3, refusals) {
         let Some((.., why)) = explained(
             query,
             effects,
@@ -611,25 +600,25 @@ fn a_picture_that_cannot_be_culled_says_why_and_is_drawn() {
     );
 }
 
-#[test]
-fn effects_and_layers_keep_their_picture() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+fn effects_and_layers_keep_their_picture(reach: Reach) {
+    let Some(mut renderer) = loan() else { return };
     let scene = scene("field?count=27&triangles=400");
     let views = walk(&scene, &mut Rng(9), 4, SIZE);
     renderer.set_scene(&scene).block_on().expect("it fits");
-    for effects in [
-        &["dissolve", "outline"][..],
-        &["stipple", "lambert"],
-        &["wireframe"],
-        &["xray"],
-        &["overdraw"],
-        &["boxes"],
-        &["facet", "fog"],
-    ] {
+    for effects in reach.of(
+        2,
+        [
+            &["dissolve", "outline"][..],
+            &["overdraw"],
+            &["stipple", "lambert"],
+            &["wireframe"],
+            &["xray"],
+            &["boxes"],
+            &["facet", "fog"],
+        ],
+    ) {
         for view in &views {
-            for visibility in options(&renderer) {
+            for visibility in reach.options(&renderer) {
                 let mut draw = |option| {
                     let pins = PinnedOptions::of(visibility).with(option);
                     renderer
@@ -657,9 +646,7 @@ fn effects_and_layers_keep_their_picture() {
 
 #[test]
 fn the_picture_before_hides_what_has_come_out_since() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let scene = scene("field?count=216&triangles=400");
     renderer.set_scene(&scene).block_on().expect("it fits");
     let pins = PinnedOptions::of(Culling::Hiz).with(Visibility::Split32);
@@ -717,8 +704,7 @@ fn what_lies_outside_the_picture_is_not_deformed() {
             .block_on()
             .expect("it is drawn");
         let buffers = renderer.explain().buffers;
-        let capture = captured(
-            &mut renderer,
+        let capture = renderer.captured(
             &scene,
             &view,
             &stack(&["lambert"]),
@@ -744,9 +730,7 @@ fn what_lies_outside_the_picture_is_not_deformed() {
 
 #[test]
 fn what_lies_far_from_its_origin_is_culled_about_the_eye() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     const FAR: DVec3 = DVec3::new(3e5, -2e5, 1e5);
     let mut scene = (*scene("sphere?triangles=3000")).clone();
     // The mesh itself lies there, in whole sixteenths.
@@ -764,7 +748,7 @@ fn what_lies_far_from_its_origin_is_culled_about_the_eye() {
     (bounds.min, bounds.max) = (bounds.min * 8.0 + FAR - 1.0, bounds.max * 8.0 + FAR + 1.0);
     scene.primitives[0].longest_edge *= 9.0;
     let scene = Arc::new(scene);
-    let views = (0..5).map(|i| {
+    let views = (0..3).map(|i| {
         let eye = FAR + DVec3::new(2.0 + f64::from(i), 0.5, 11.0 - f64::from(i));
         let camera = Camera {
             eye,
@@ -795,3 +779,12 @@ fn what_lies_far_from_its_origin_is_culled_about_the_eye() {
         );
     }
 }
+
+few_and_all!(
+    mistakes_of_culling_are_seen,
+    a_picture_that_cannot_be_culled_says_why_and_is_drawn,
+    another_scene_another_size_and_a_pause_leave_nothing_stale,
+    two_passes_lose_nothing_on_any_walk,
+    more_meshlets_than_one_row_of_workgroups_are_all_drawn,
+    effects_and_layers_keep_their_picture,
+);

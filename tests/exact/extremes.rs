@@ -228,8 +228,8 @@ fn every_case_that_needs_code_is_tested_here_or_is_a_sweep_of_the_continuous_int
         .collect();
     let listed: BTreeSet<&str> = stress::cases().iter().map(|case| case.name).collect();
     assert_eq!(tested, listed);
-    let steps = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(".ci/run"))
-        .expect(".ci/run can be read");
+    let steps = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(".ci/full"))
+        .expect(".ci/full can be read");
     let line = steps
         .lines()
         .find_map(|line| line.split_once("rasterlab-fuzz -- cases "));
@@ -237,7 +237,7 @@ fn every_case_that_needs_code_is_tested_here_or_is_a_sweep_of_the_continuous_int
     assert_eq!(
         names.as_deref(),
         Some(SWEEPS),
-        "the cases that .ci/run draws"
+        "the cases that .ci/full draws"
     );
 }
 

@@ -8,7 +8,6 @@ use rasterlab::{
     accuracy::{PinnedOptions, PositionFormat},
     frame::NO_TRIANGLE,
     oracle,
-    plan::AccuracyRequest,
     preset::{LengthUnit, Preset, SceneSource},
     preset_file,
     scene::{Ground, GroundShape, Scene},
@@ -49,24 +48,21 @@ fn grounds() -> [Ground; 2] {
     ]
 }
 
-#[test]
-fn a_model_on_a_ground_with_its_shadow_is_exact_with_every_option() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
-    for (query, ground) in ["teapot?tess=4", "walker?tess=1", "tentacle?tess=3"]
+fn a_model_on_a_ground_with_its_shadow_is_exact_with_every_option(reach: Reach) {
+    let Some(mut renderer) = loan() else { return };
+    let stands = ["teapot?tess=4", "walker?tess=1", "tentacle?tess=3"]
         .into_iter()
-        .flat_map(|query| grounds().map(|g| (query, g)))
-    {
+        .flat_map(|query| grounds().map(|g| (query, g)));
+    for (query, ground) in reach.of(2, stands) {
         let mut preset = preset(query, &["shadow", "facet"], Some(ground));
         (preset.spin_deg_per_s, preset.clock.time_s) = (30.0, 1.0);
         let scene = loaded(&preset);
         let (view, stack) = (preset.view(&scene, SIZE), preset.stack_on(&scene, SIZE));
         let first = scene.triangle_count()
             - u64::from(scene.primitives[scene.ground_instances()[0].primitive].triangle_count());
-        for option in options(&renderer) {
+        for option in reach.options(&renderer) {
             let what = format!("{query} on {:?} with {}", ground.shape, option.name());
-            let (capture, _) = exact(&mut renderer, &scene, &view, &stack, &pinned(option), &what);
+            let (capture, _) = renderer.exact(&scene, &view, &stack, &pinned(option), &what);
             let shown = capture
                 .frame
                 .triangle_id
@@ -80,11 +76,8 @@ fn a_model_on_a_ground_with_its_shadow_is_exact_with_every_option() {
             .starts_with("teapot")
             .then_some(PositionFormat::Packed16);
         for format in [PositionFormat::Relative].into_iter().chain(packed) {
-            let accuracy = AccuracyRequest {
-                pins: PinnedOptions::of(format),
-                ..AccuracyRequest::default()
-            };
-            let (_, verdict) = judged(&mut renderer, &scene, &view, &stack, &accuracy);
+            let accuracy = request(PinnedOptions::of(format));
+            let (_, verdict) = renderer.judged(&scene, &view, &stack, &accuracy);
             assert_eq!(
                 verdict.report.unexplained, 0,
                 "{query} with {format:?}: {:?}",
@@ -195,9 +188,7 @@ fn the_shadow_of_the_scene_falls_on_the_ground_and_is_as_fine_as_without_it() {
 
 #[test]
 fn particles_come_before_the_ground_and_fall_on_it_in_shadow() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let mut preset = preset(
         "teapot?tess=3",
         &["shadow", "particles"],
@@ -220,6 +211,8 @@ fn particles_come_before_the_ground_and_fall_on_it_in_shadow() {
     );
     assert_eq!(with_particles.ground_instances(), scene.ground_instances());
     let accuracy = pinned(quick_option(&renderer));
-    let (_, verdict) = judged_preset(&mut renderer, &scene, &preset, &accuracy);
+    let (_, verdict) = renderer.judged_preset(&scene, &preset, &accuracy);
     exactness(&verdict.report).unwrap_or_else(|why| panic!("{why}"));
 }
+
+few_and_all!(a_model_on_a_ground_with_its_shadow_is_exact_with_every_option,);

@@ -28,10 +28,10 @@ const RMS: f64 = 2.0;
 
 /// The baseline's picture of a scene, the oracle's, and the number of its draw calls.
 fn pictures(scene: &Arc<Scene>, view: &View) -> Option<(Vec<[u8; 4]>, Frame, usize)> {
-    let mut renderer = renderer()?;
+    let mut renderer = loan()?;
     let stack = stack(&["lambert"]);
     let option = quick_option(&renderer);
-    let (_, verdict) = judged(&mut renderer, scene, view, &stack, &pinned(option));
+    let (_, verdict) = renderer.judged(scene, view, &stack, &pinned(option));
     let (gpu, key) = (renderer.gpu(), renderer.key().expect("something was drawn"));
     let hardware = Hardware::new(gpu, scene, view, &stack, key)
         .block_on()

@@ -65,7 +65,7 @@ fn with_whole_records(scene: &Scene) -> Arc<Scene> {
 
 #[test]
 fn instances_are_drawn_as_whole_records_are_where_those_do_not_fit() {
-    let (Some(mut gpu), Some(mut usual)) = (own_gpu(), renderer()) else {
+    let (Some(mut gpu), Some(mut usual)) = (own_gpu(), loan()) else {
         return;
     };
     let caps = &mut Arc::get_mut(&mut gpu).expect("it is no other's").caps;
@@ -90,11 +90,11 @@ fn instances_are_drawn_as_whole_records_are_where_those_do_not_fit() {
         );
         let what = format!("{effects:?}, {is_packed}");
         let drawn = if is_packed {
-            captured(&mut small, &crowd, &view, &stack, &request)
+            small.captured(&crowd, &view, &stack, &request)
         } else {
-            exact(&mut small, &crowd, &view, &stack, &request, &what).0
+            small.exact(&crowd, &view, &stack, &request, &what).0
         };
-        let wanted = captured(&mut usual, &whole, &view, &stack, &request);
+        let wanted = usual.captured(&whole, &view, &stack, &request);
         let covered = wanted.frame.covered();
         assert!(covered > 300, "{what}: {covered}");
         assert!(

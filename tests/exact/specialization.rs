@@ -11,7 +11,7 @@ use rasterlab::{
     gpu::{Explanation, Renderer, ResourceId},
     measure::compare,
     oracle,
-    plan::{AccuracyRequest, Tuning},
+    plan::Tuning,
     preset_file,
     scene::{Scene, view::View},
     shader::{Fetch, key::AttributeFormat},
@@ -110,21 +110,17 @@ fn assert_same(a: &Frame, b: &Frame, band: &[bool], what: &str) {
     );
 }
 
-#[test]
-fn the_planned_kernel_and_the_one_that_leaves_nothing_out_draw_the_same_scenes() {
-    planned_as_everything(pictures_of_scenes);
+fn the_planned_kernel_and_the_one_that_leaves_nothing_out_draw_the_same_scenes(reach: Reach) {
+    planned_as_everything(reach, pictures_of_scenes);
 }
 
-#[test]
-fn the_planned_kernel_and_the_one_that_leaves_nothing_out_draw_the_same_effects() {
-    planned_as_everything(pictures_of_effects);
+fn the_planned_kernel_and_the_one_that_leaves_nothing_out_draw_the_same_effects(reach: Reach) {
+    planned_as_everything(reach, pictures_of_effects);
 }
 
 /// Draws the pictures both ways.
-fn planned_as_everything(pictures: fn(&[Visibility]) -> Vec<Picture>) {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+fn planned_as_everything(reach: Reach, pictures: fn(&[Visibility]) -> Vec<Picture>) {
+    let Some(mut renderer) = loan() else { return };
     let usual = renderer.gpu().caps.tuning();
     // Thresholds of a GPU, so that medium triangles occur.
     let planned_tuning = Tuning {
@@ -133,13 +129,13 @@ fn planned_as_everything(pictures: fn(&[Visibility]) -> Vec<Picture>) {
         ..usual
     };
     let mut spared = 0;
-    for (what, scene, view, stack, option) in pictures(&options(&renderer)) {
+    for (what, scene, view, stack, option) in reach.of(3, pictures(&reach.options(&renderer))) {
         let [(planned, key), (maximal, everything)] = [true, false].map(|specialized| {
             renderer.set_tuning(Tuning {
                 specialized,
                 ..planned_tuning
             });
-            let capture = captured(&mut renderer, &scene, &view, &stack, &pinned(option));
+            let capture = renderer.captured(&scene, &view, &stack, &pinned(option));
             (
                 capture,
                 renderer.key().expect("something was drawn").clone(),
@@ -235,31 +231,26 @@ fn names(explanation: &Explanation) -> (Vec<&str>, Vec<&str>) {
     (passes, buffers)
 }
 
-#[test]
-fn an_effect_that_is_switched_off_again_leaves_no_pass_and_no_buffer() {
+fn an_effect_that_is_switched_off_again_leaves_no_pass_and_no_buffer(reach: Reach) {
     let Some(gpu) = gpu() else { return };
     let (mut renderer, scene) = (Renderer::new(gpu), scene("teapot?tess=4"));
     let view = view(&scene, [64, 48]);
     let mut explained = |names: &[&str]| {
-        captured(
-            &mut renderer,
-            &scene,
-            &view,
-            &stack(names),
-            &pinned(Visibility::Split32),
-        );
+        renderer.captured(&scene, &view, &stack(names), &split32());
         renderer.explain()
     };
     let bare = explained(&[]);
     let mut has_own = 0;
-    for effect in EFFECTS.iter().filter(|effect| effect.name != "particles") {
+    // In reverse, x-ray and wireframe come first.
+    let effects = EFFECTS.iter().rev();
+    for effect in reach.of(6, effects.filter(|effect| effect.name != "particles")) {
         let on = explained(&[effect.name.as_str()]);
         let off = explained(&[]);
         assert_eq!(names(&off), names(&bare), "{}", effect.name);
         has_own += usize::from(names(&on) != names(&bare));
     }
     assert!(
-        has_own > 5,
+        has_own > usize::from(reach == Reach::All) * 5,
         "{has_own} effects have passes or buffers of their own"
     );
     assert!(
@@ -268,8 +259,7 @@ fn an_effect_that_is_switched_off_again_leaves_no_pass_and_no_buffer() {
     );
 }
 
-#[test]
-fn a_scene_of_small_triangles_has_no_queues_arguments_or_clipped_triangles() {
+fn a_scene_of_small_triangles_has_no_queues_arguments_or_clipped_triangles(reach: Reach) {
     let tuning = Tuning {
         max_small_samples: 64,
         max_small_side: 32,
@@ -336,7 +326,7 @@ fn a_scene_of_small_triangles_has_no_queues_arguments_or_clipped_triangles() {
     }
 
     // The same scene with nothing spared, and the hall, which needs everything.
-    for (query, tuning) in [
+    let whole = [
         (
             "sphere?triangles=20000",
             Tuning {
@@ -345,7 +335,8 @@ fn a_scene_of_small_triangles_has_no_queues_arguments_or_clipped_triangles() {
             },
         ),
         ("near", tuning),
-    ] {
+    ];
+    for (query, tuning) in reach.of(1, whole.into_iter().rev()) {
         let (all, ..) = explained(query, tuning).expect("there was an adapter");
         let (passes, buffers) = names(&all);
         for pass in [
@@ -439,23 +430,13 @@ fn only_a_deformed_scene_has_the_skin_pass_and_only_the_buffers_that_it_needs() 
     );
 }
 
-#[test]
-fn only_a_stack_with_dots_has_their_passes_and_only_their_way_s_buffers() {
+fn only_a_stack_with_dots_has_their_passes_and_only_their_way_s_buffers(reach: Reach) {
     let Some(gpu) = gpu() else { return };
     let (scene, dots) = (scene("teapot?tess=4"), stack(&["dots"]));
     let view = view(&scene, [160, 120]);
     let explained = |stack: &Stack, way: DotCulling| {
         let mut renderer = Renderer::new(gpu.clone());
-        captured(
-            &mut renderer,
-            &scene,
-            &view,
-            stack,
-            &AccuracyRequest {
-                pins: PinnedOptions::of(way),
-                ..AccuracyRequest::default()
-            },
-        );
+        renderer.captured(&scene, &view, stack, &request(PinnedOptions::of(way)));
         renderer.explain()
     };
     let bare = explained(&stack(&["lambert"]), DotCulling::Gpu);
@@ -509,7 +490,7 @@ fn only_a_stack_with_dots_has_their_passes_and_only_their_way_s_buffers() {
             ],
         ),
     ];
-    for (way, its_passes, its_buffers) in ways {
+    for (way, its_passes, its_buffers) in reach.of(1, ways.into_iter().rev()) {
         let all = explained(&dots, way);
         let (passes, buffers) = names(&all);
         assert_eq!(
@@ -588,8 +569,7 @@ fn vertices_and_pixels_take_sixteen_bytes_at_most() {
     }
 }
 
-#[test]
-fn a_known_key_compiles_nothing() {
+fn a_known_key_compiles_nothing(reach: Reach) {
     // Renderers on one device share their pipelines.
     let Some(gpu) = own_gpu() else { return };
     let mut renderer = Renderer::new(gpu);
@@ -602,14 +582,8 @@ fn a_known_key_compiles_nothing() {
     let round = |renderer: &mut Renderer| {
         for scene in &scenes {
             for stack in &stacks {
-                for option in options(renderer) {
-                    captured(
-                        renderer,
-                        scene,
-                        &view(scene, [64, 48]),
-                        stack,
-                        &pinned(option),
-                    );
+                for option in reach.options(renderer) {
+                    renderer.captured(scene, &view(scene, [64, 48]), stack, &pinned(option));
                 }
             }
         }
@@ -629,23 +603,20 @@ fn a_known_key_compiles_nothing() {
     field
         .set(&mut effect.words, &[0.5])
         .expect("within its range");
-    captured(
-        &mut renderer,
-        &scenes[0],
-        &view(&scenes[0], [64, 48]),
-        &turned,
-        &pinned(Visibility::Split32),
-    );
-    captured(
-        &mut renderer,
-        &scenes[0],
-        &view(&scenes[0], [80, 61]),
-        &turned,
-        &pinned(Visibility::Split32),
-    );
+    renderer.captured(&scenes[0], &view(&scenes[0], [64, 48]), &turned, &split32());
+    renderer.captured(&scenes[0], &view(&scenes[0], [80, 61]), &turned, &split32());
     assert_eq!(
         renderer.compiled(),
         first,
         "a slider or a size compiled something"
     );
 }
+
+few_and_all!(
+    only_a_stack_with_dots_has_their_passes_and_only_their_way_s_buffers,
+    a_scene_of_small_triangles_has_no_queues_arguments_or_clipped_triangles,
+    the_planned_kernel_and_the_one_that_leaves_nothing_out_draw_the_same_scenes,
+    the_planned_kernel_and_the_one_that_leaves_nothing_out_draw_the_same_effects,
+    an_effect_that_is_switched_off_again_leaves_no_pass_and_no_buffer,
+    a_known_key_compiles_nothing,
+);

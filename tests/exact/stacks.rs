@@ -25,9 +25,7 @@ fn as_preset(stack: &Stack) -> String {
 
 #[test]
 fn two_effects_in_one_slot_are_refused_by_name() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let scene = scene("fan?n=13");
     let view = view(&scene, [32, 24]);
     for slot in Slot::ALL {

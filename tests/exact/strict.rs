@@ -204,10 +204,9 @@ fn differences(gpu: &Gpu, library: &Library, seed: u32, count: u32) -> Vec<Strin
     different
 }
 
-#[test]
-fn soft_floats_are_those_of_the_cpu_with_subnormals_flushed() {
+fn soft_floats_are_those_of_the_cpu_with_subnormals_flushed(reach: Reach) {
     let Some(gpu) = gpu() else { return };
-    for seed in 0..4 {
+    for seed in reach.of(1, 0..4) {
         let different = differences(&gpu, &Library::Embedded, seed, 1 << 20);
         assert!(
             different.is_empty(),
@@ -368,12 +367,11 @@ fn pictures() -> Vec<Picture> {
 }
 
 fn strict(visibility: Visibility) -> AccuracyRequest {
-    AccuracyRequest {
-        pins: PinnedOptions::of(visibility)
+    request(
+        PinnedOptions::of(visibility)
             .with(VertexTransform::Strict)
             .with(DepthFormat::Integer),
-        ..AccuracyRequest::default()
-    }
+    )
 }
 
 const HASHES: &str = include_str!("../strict_hashes.txt");
@@ -426,14 +424,14 @@ fn stray(
     (tuning, option): (Tuning, Visibility),
 ) -> Option<String> {
     renderer.set_tuning(tuning);
-    let frame = captured(
-        renderer,
-        &picture.scene,
-        &picture.view,
-        &picture.stack,
-        &strict(option),
-    )
-    .frame;
+    let frame = renderer
+        .captured(
+            &picture.scene,
+            &picture.view,
+            &picture.stack,
+            &strict(option),
+        )
+        .frame;
     (picture.line(&frame.triangle_id, &frame.depth_key) != line).then(|| {
         let (triangle_ids, keys) = picture.reference();
         let [triangle_ids, keys] = [
@@ -455,18 +453,15 @@ fn stray(
     })
 }
 
-#[test]
-fn the_adapter_finds_the_hashes_of_the_list() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+fn the_adapter_finds_the_hashes_of_the_list(reach: Reach) {
+    let Some(mut renderer) = loan() else { return };
     let pictures = pictures();
     assert_eq!(
         pictures.len(),
         HASHES.lines().count(),
         "the list is of other pictures"
     );
-    let ways = ways(&renderer);
+    let ways = reach.of(1, ways(&renderer));
     let strays: Vec<String> = pictures
         .iter()
         .zip(HASHES.lines())
@@ -484,12 +479,9 @@ fn the_adapter_finds_the_hashes_of_the_list() {
     );
 }
 
-#[test]
-fn the_judge_finds_nothing_to_excuse_in_strict_pictures() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
-    for picture in pictures().into_iter().step_by(5) {
+fn the_judge_finds_nothing_to_excuse_in_strict_pictures(reach: Reach) {
+    let Some(mut renderer) = loan() else { return };
+    for picture in reach.of(2, pictures().into_iter().step_by(5)) {
         let option = Visibility::Split32;
         let Picture {
             name,
@@ -497,7 +489,7 @@ fn the_judge_finds_nothing_to_excuse_in_strict_pictures() {
             view,
             stack,
         } = &picture;
-        let (capture, verdict) = exact(&mut renderer, scene, view, stack, &strict(option), name);
+        let (capture, verdict) = renderer.exact(scene, view, stack, &strict(option), name);
         let a = &verdict.report;
         assert_eq!(
             [
@@ -516,28 +508,16 @@ fn the_judge_finds_nothing_to_excuse_in_strict_pictures() {
     }
 }
 
-#[test]
-fn integer_keys_alone_leave_no_depth_band() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+fn integer_keys_alone_leave_no_depth_band(reach: Reach) {
+    let Some(mut renderer) = loan() else { return };
     for query in ["knot?tess=24", "sizes", "near"] {
         let scene = scene(query);
         let view = view(&scene, [256, 192]);
-        for (tuning, option) in ways(&renderer) {
+        for (tuning, option) in reach.of(1, ways(&renderer)) {
             renderer.set_tuning(tuning);
-            let accuracy = AccuracyRequest {
-                pins: PinnedOptions::of(option).with(DepthFormat::Integer),
-                ..AccuracyRequest::default()
-            };
-            let (capture, verdict) = exact(
-                &mut renderer,
-                &scene,
-                &view,
-                &stack(&["depth"]),
-                &accuracy,
-                query,
-            );
+            let accuracy = request(PinnedOptions::of(option).with(DepthFormat::Integer));
+            let (capture, verdict) =
+                renderer.exact(&scene, &view, &stack(&["depth"]), &accuracy, query);
             assert_eq!(verdict.report.depth_band_pixels, 0, "{query}");
             assert_eq!(
                 verdict.expected.triangle_id, capture.frame.triangle_id,
@@ -553,7 +533,7 @@ fn integer_keys_alone_leave_no_depth_band() {
 
 #[test]
 fn a_strict_picture_with_one_mistake_differs_from_the_list() {
-    let Some(healthy) = renderer() else { return };
+    let Some(healthy) = loan() else { return };
     let pictures = pictures();
     let way = (
         Tuning {
@@ -599,19 +579,14 @@ fn a_strict_picture_with_one_mistake_differs_from_the_list() {
 
 #[test]
 fn what_floats_decide_is_refused_by_name() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let scene = scene("sphere?triangles=200");
     let view = view(&scene, [64, 64]);
     renderer
         .set_scene(&scene)
         .block_on()
         .expect("a builtin fits");
-    let accuracy = AccuracyRequest {
-        pins: PinnedOptions::of(VertexTransform::Strict),
-        ..AccuracyRequest::default()
-    };
+    let accuracy = request(PinnedOptions::of(VertexTransform::Strict));
     for name in ["explode", "inflate", "wobble", "race"] {
         let error = renderer
             .draw(&view, &stack(&["lambert", name]), &accuracy)
@@ -629,3 +604,10 @@ fn what_floats_decide_is_refused_by_name() {
         .block_on()
         .expect("integers decide here");
 }
+
+few_and_all!(
+    integer_keys_alone_leave_no_depth_band,
+    the_judge_finds_nothing_to_excuse_in_strict_pictures,
+    soft_floats_are_those_of_the_cpu_with_subnormals_flushed,
+    the_adapter_finds_the_hashes_of_the_list,
+);

@@ -190,7 +190,7 @@ fn every_binding_has_a_resource_and_every_bound_struct_is_shared() {
             bound.extend(resource);
             assert!(
                 resource.is_some(),
-                "{what} binds {}, which crates/gpu/src/resource_id.rs does not list",
+                "{what} binds {}, which crates/gpu/src/layout/resource_id.rs does not list",
                 binding.name
             );
             let (stride, name) = element(&module.module, binding.index);
@@ -200,7 +200,7 @@ fn every_binding_has_a_resource_and_every_bound_struct_is_shared() {
             };
             let record = RECORDS.iter().find(|record| record.wgsl == name);
             let record = record.unwrap_or_else(|| {
-                panic!("{what} binds {name}, which crates/gpu/src/records.rs does not list")
+                panic!("{what} binds {name}, which crates/gpu/src/layout/records.rs does not list")
             });
             assert!(
                 stride.is_none_or(|stride| stride == record.size),

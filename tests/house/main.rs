@@ -21,5 +21,6 @@ mod scopes;
 #[path = "../common/shader_parts.rs"]
 mod shader_parts;
 mod shaders;
+mod size;
 mod surface_inputs;
 mod twins;

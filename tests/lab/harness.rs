@@ -351,29 +351,32 @@ pub fn lab(open: &str) -> Option<Lab> {
     lab_in(open, None)
 }
 
-/// Steps until pictures, reports and thumbnails have arrived, and then until every undo step is
-/// closed.
-pub fn settle(lab: &mut Lab) {
+/// Steps until `is_so`. The window's own clock moves by a quarter of a second with each step,
+/// however long that takes; this asks for the real time only to end a test that waits for what
+/// never comes, and so that threads which the window waits for get the processors.
+pub fn wait_until(lab: &mut Lab, what: &str, mut is_so: impl FnMut(&Lab) -> bool) {
     // A window that is compiling shares two processors with the other tests.
     let patience = Instant::now() + Duration::from_secs(300);
     loop {
         let start = Instant::now();
         lab.step();
-        if lab.state().is_idle() {
+        if is_so(lab) {
             break;
         }
         assert!(
             Instant::now() < patience,
-            "the window does not come to rest\n{}",
+            "waited in vain until {what}\n{}",
             lab.state().log_text()
         );
-        // What the window waits for needs the processors more than the window does.
-        std::thread::sleep(
-            start
-                .elapsed()
-                .clamp(Duration::from_millis(5), Duration::from_millis(50)),
-        );
+        let pause = start.elapsed();
+        std::thread::sleep(pause.clamp(Duration::from_millis(2), Duration::from_millis(50)));
     }
+}
+
+/// Steps until pictures, reports and thumbnails have arrived, and then until every undo step is
+/// closed.
+pub fn settle(lab: &mut Lab) {
+    wait_until(lab, "the window comes to rest", |lab| lab.state().is_idle());
     lab.run_steps(3);
     lab.check_accessibility();
 }

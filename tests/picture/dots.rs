@@ -41,10 +41,7 @@ fn dotted(values: &[(&str, f64)], others: &[&str]) -> Stack {
 }
 
 fn on(way: DotCulling) -> AccuracyRequest {
-    AccuracyRequest {
-        pins: PinnedOptions::of(way),
-        ..AccuracyRequest::default()
-    }
+    request(PinnedOptions::of(way))
 }
 
 /// One picture by all three ways, judged, and found to be one.
@@ -56,15 +53,15 @@ fn three_ways(
     what: &str,
 ) -> Capture {
     let [brute, cpu, gpu] = WAYS.map(|way| {
-        exact(
-            renderer,
-            scene,
-            view,
-            stack,
-            &on(way),
-            &format!("{what}, {}", way.name()),
-        )
-        .0
+        renderer
+            .exact(
+                scene,
+                view,
+                stack,
+                &on(way),
+                &format!("{what}, {}", way.name()),
+            )
+            .0
     });
     for (way, other) in [("cpu", &cpu), ("gpu", &gpu)] {
         assert!(
@@ -82,7 +79,7 @@ fn three_ways(
         dot_groups: 1024,
         ..usual
     });
-    let divided = captured(renderer, scene, view, stack, &on(DotCulling::Gpu));
+    let divided = renderer.captured(scene, view, stack, &on(DotCulling::Gpu));
     renderer.set_tuning(usual);
     assert!(
         brute.frame.dots == divided.frame.dots,
@@ -103,11 +100,8 @@ fn flat(points: &[[f32; 3]], size: [u32; 2]) -> (Arc<Scene>, View) {
     (scene, view)
 }
 
-#[test]
-fn three_ways_of_choosing_dots_give_the_oracle_s_picture() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+fn three_ways_of_choosing_dots_give_the_oracle_s_picture(reach: Reach) {
+    let Some(mut renderer) = loan() else { return };
     let cases: [(&str, &[(&str, f64)]); 7] = [
         ("teapot?tess=8", &[("spacing_m", 0.02)]),
         (
@@ -147,7 +141,7 @@ fn three_ways_of_choosing_dots_give_the_oracle_s_picture() {
             ],
         ),
     ];
-    for (query, values) in cases {
+    for (query, values) in reach.of(2, cases) {
         let scene = scene(query);
         let capture = three_ways(
             &mut renderer,
@@ -166,17 +160,17 @@ fn three_ways_of_choosing_dots_give_the_oracle_s_picture() {
     }
 }
 
-#[test]
-fn close_views_leave_most_lines_out_and_no_dot() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+fn close_views_leave_most_lines_out_and_no_dot(reach: Reach) {
+    let Some(mut renderer) = loan() else { return };
     let scene = scene("knot?tess=12");
-    for (eye, target) in [
-        ([0.2, 0.1, 0.6], [1.0, 0.3, 0.0]),
-        ([0.0, 0.0, 0.0], [0.4, 1.0, 0.1]),
-        ([3.0, 0.2, 0.0], [0.0, 0.0, 0.0]),
-    ] {
+    for (eye, target) in reach.of(
+        1,
+        [
+            ([0.2, 0.1, 0.6], [1.0, 0.3, 0.0]),
+            ([0.0, 0.0, 0.0], [0.4, 1.0, 0.1]),
+            ([3.0, 0.2, 0.0], [0.0, 0.0, 0.0]),
+        ],
+    ) {
         let camera = rasterlab::scene::camera::Camera {
             eye: eye.into(),
             target: target.into(),
@@ -193,28 +187,20 @@ fn close_views_leave_most_lines_out_and_no_dot() {
     }
 }
 
-#[test]
-fn every_backend_of_visibility_hides_the_same_dots() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+fn every_backend_of_visibility_hides_the_same_dots(reach: Reach) {
+    let Some(mut renderer) = loan() else { return };
     let scene = scene("cube-wall");
     let (view, stack) = (
         view(&scene, [160, 120]),
         dotted(&[("spacing_m", 0.03)], &[]),
     );
-    let pictures: Vec<Capture> = options(&renderer)
+    let pictures: Vec<Capture> = reach
+        .of(2, options(&renderer))
         .into_iter()
         .map(|option| {
-            exact(
-                &mut renderer,
-                &scene,
-                &view,
-                &stack,
-                &pinned(option),
-                option.name(),
-            )
-            .0
+            renderer
+                .exact(&scene, &view, &stack, &pinned(option), option.name())
+                .0
         })
         .collect();
     assert!(
@@ -227,9 +213,7 @@ fn every_backend_of_visibility_hides_the_same_dots() {
 
 #[test]
 fn dots_go_with_joints_and_effects_and_under_every_other() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let deformed = Preset {
         scene: SceneSource::Builtin("tentacle?tess=3".into()),
         ..Preset::default()
@@ -244,32 +228,28 @@ fn dots_go_with_joints_and_effects_and_under_every_other() {
     };
     let tentacle = scene("tentacle?tess=3");
     let view_of = deformed.view(&tentacle, [160, 120]);
-    exact(
-        &mut renderer,
+    renderer.exact(
         &tentacle,
         &view_of,
         &dotted(&[("spacing_m", 0.03)], &[]),
-        &AccuracyRequest::default(),
+        &unpinned(),
         "tentacle",
     );
 
     let teapot = scene("teapot?tess=4");
     let stack = dotted(&[("spacing_m", 0.05)], &["explode", "outline", "posterize"]);
-    exact(
-        &mut renderer,
+    renderer.exact(
         &teapot,
         &view(&teapot, [160, 120]),
         &stack,
-        &AccuracyRequest::default(),
+        &unpinned(),
         "with other effects",
     );
 }
 
 #[test]
 fn a_tree_of_lines_refuses_lines_that_move() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     for (query, others, word) in [
         ("tentacle?tess=2", &[][..], "clips"),
         ("teapot?tess=2", &["wobble"][..], "the effect wobble"),
@@ -293,13 +273,10 @@ fn a_tree_of_lines_refuses_lines_that_move() {
     }
 }
 
-#[test]
-fn no_number_of_dots_is_lost() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+fn no_number_of_dots_is_lost(reach: Reach) {
+    let Some(mut renderer) = loan() else { return };
     // A line along the middle of the picture: so many meters hold so many dots.
-    for count in [1u64, 2, 63, 64, 65, 4096, 4097] {
+    for count in reach.of(3, [1u64, 65, 4097, 2, 63, 64, 4096]) {
         let length = (count - 1).max(1) as f32;
         let (scene, view) = flat(&[[0.0; 3], [length, 0.0, 0.0]], [64, 48]);
         let spacing = if count == 1 {
@@ -332,13 +309,7 @@ fn no_number_of_dots_is_lost() {
         capture.geometry.dots.is_empty()
             && capture.frame.dots.iter().all(|strength| *strength == 0)
     );
-    let bare = captured(
-        &mut renderer,
-        &scene,
-        &view,
-        &stack(&[]),
-        &AccuracyRequest::default(),
-    );
+    let bare = renderer.captured(&scene, &view, &stack(&[]), &unpinned());
     assert!(
         bare.frame.color == capture.frame.color,
         "no dots are no change"
@@ -348,10 +319,9 @@ fn no_number_of_dots_is_lost() {
 /// Half as many dots again as the workgroups of one dimension draw, so that their loss would show;
 /// all of them in view, so that the list is as full as it can be.
 #[test]
+#[ignore = "slow: .ci/full"]
 fn dots_beyond_65_535_workgroups_are_all_drawn() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let spacing = 2e-5f32;
     let count = 65_535 * 96;
     let length = (count as f64 - 0.5) * f64::from(spacing);
@@ -366,7 +336,7 @@ fn dots_beyond_65_535_workgroups_are_all_drawn() {
         &[],
     );
     let [brute, gpu] = [DotCulling::Brute, DotCulling::Gpu]
-        .map(|way| captured(&mut renderer, &scene, &view, &stack, &on(way)));
+        .map(|way| renderer.captured(&scene, &view, &stack, &on(way)));
     assert_eq!(brute.geometry.dots.len(), count);
     let in_view = |dot: &SnappedVertex| {
         dot.flags == 0 && (0..64 * 256).contains(&dot.x) && (0..48 * 256).contains(&dot.y)
@@ -385,15 +355,13 @@ fn dots_beyond_65_535_workgroups_are_all_drawn() {
 
 #[test]
 fn more_dots_than_fit_are_refused_with_their_number() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let (scene, view) = flat(&[[0.0; 3], [1e6, 0.0, 0.0]], [32, 24]);
     renderer.set_scene(&scene).block_on().expect("it fits");
     let stack = dotted(&[("lines", 2.0), ("spacing_m", 0.01)], &[]);
     let refused = [
         renderer
-            .capture(&view, &stack, &AccuracyRequest::default())
+            .capture(&view, &stack, &unpinned())
             .block_on()
             .err()
             .map(|error: RenderError| error.to_string()),
@@ -409,12 +377,11 @@ fn more_dots_than_fit_are_refused_with_their_number() {
         );
     }
     // And the renderer goes on.
-    captured(
-        &mut renderer,
+    renderer.captured(
         &scene,
         &view,
         &dotted(&[("lines", 2.0), ("spacing_m", 1000.0)], &[]),
-        &AccuracyRequest::default(),
+        &unpinned(),
     );
 }
 
@@ -592,8 +559,7 @@ fn moving_away_never_jumps() {
 
 // -------- mutants
 
-#[test]
-fn every_mistake_in_the_dots_shows() {
+fn every_mistake_in_the_dots_shows(reach: Reach) {
     let Some(gpu) = gpu() else { return };
     let scene = scene("cube-wall");
     let view = view(&scene, [160, 120]);
@@ -628,7 +594,7 @@ fn every_mistake_in_the_dots_shows() {
         &scene,
         &view,
         &stack,
-        &AccuracyRequest::default(),
+        &unpinned(),
     );
     assert!(
         right
@@ -637,16 +603,10 @@ fn every_mistake_in_the_dots_shows() {
             .iter()
             .any(|strength| (1..FULL).contains(strength))
     );
-    for (from, to) in mistakes {
+    for (from, to) in reach.of(3, mistakes) {
         let wrong = mutated(from, to);
         let mut renderer = Renderer::with_library(gpu.clone(), wrong.shaders());
-        let (_, verdict) = judged(
-            &mut renderer,
-            &scene,
-            &view,
-            &stack,
-            &AccuracyRequest::default(),
-        );
+        let (_, verdict) = renderer.judged(&scene, &view, &stack, &unpinned());
         assert!(
             exactness(&verdict.report).is_err(),
             "{from:?} as {to:?} passes"
@@ -654,3 +614,11 @@ fn every_mistake_in_the_dots_shows() {
     }
     assert!(options(&Renderer::new(gpu)).contains(&Visibility::Split32));
 }
+
+few_and_all!(
+    three_ways_of_choosing_dots_give_the_oracle_s_picture,
+    close_views_leave_most_lines_out_and_no_dot,
+    every_backend_of_visibility_hides_the_same_dots,
+    every_mistake_in_the_dots_shows,
+    no_number_of_dots_is_lost,
+);

@@ -12,7 +12,7 @@ use rasterlab::{
     gpu::{RenderError, Renderer},
     measure::ErrorReport as Errors,
     oracle,
-    plan::{AccuracyRequest, Tuning},
+    plan::Tuning,
     preset_file,
     scene::{Scene, view::View},
 };
@@ -141,15 +141,14 @@ fn two_effects_in_one_slot_are_refused_in_one_sentence_that_names_both() {
 
 // -------- x-ray
 
-#[test]
-fn the_average_is_bit_equal_in_any_order_on_every_run_option_and_tuning() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+fn the_average_is_bit_equal_in_any_order_on_every_run_option_and_tuning(reach: Reach) {
+    let Some(mut renderer) = loan() else { return };
     let triangles = soup(1, 300, 64, 1.0);
     let (view, stack) = (pixel_view(64, 64), with(&["lambert", "xray.weight=facing"]));
     let draw = |renderer: &mut Renderer, scene: &Arc<Scene>, option| {
-        let frame = captured(renderer, scene, &view, &stack, &pinned(option)).frame;
+        let frame = renderer
+            .captured(scene, &view, &stack, &pinned(option))
+            .frame;
         (frame.color, frame.layer_sums)
     };
     let scene = scene_from(&triangles);
@@ -158,15 +157,15 @@ fn the_average_is_bit_equal_in_any_order_on_every_run_option_and_tuning() {
         first.1.iter().filter(|&&weight| weight > 20).count() > 1000,
         "many layers"
     );
-    for run in 0..20 {
+    for run in reach.of(4, 0..20) {
         assert!(
             draw(&mut renderer, &scene, Visibility::Split32) == first,
             "run {run}"
         );
     }
     let mut rng = Rng(7);
-    for option in options(&renderer) {
-        for tuning in tunings() {
+    for option in reach.options(&renderer) {
+        for tuning in reach.of(2, tunings()) {
             renderer.set_tuning(tuning);
             let scene = scene_from(&shuffled(&mut rng, triangles.clone()));
             assert!(
@@ -180,18 +179,13 @@ fn the_average_is_bit_equal_in_any_order_on_every_run_option_and_tuning() {
 
 #[test]
 fn more_layers_than_any_sum_holds_are_a_sentence_and_a_mark_never_silent() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let view = pixel_view(2, 2);
     let count = xray::capacity(8) / xray::FULL_WEIGHT + 2;
     let scene = pile(count);
     let stack = with(&["xray.weight=facing"]);
     renderer.set_scene(&scene).block_on().expect("it fits");
-    match renderer
-        .capture(&view, &stack, &AccuracyRequest::default())
-        .block_on()
-    {
+    match renderer.capture(&view, &stack, &unpinned()).block_on() {
         Err(error @ RenderError::FullSums(4)) => {
             let text = error.to_string();
             assert!(
@@ -208,48 +202,36 @@ fn more_layers_than_any_sum_holds_are_a_sentence_and_a_mark_never_silent() {
     }
     // Asynchronously, as a window draws: with 8 bits it overflows, and the counters say so.
     renderer
-        .draw(&view, &stack, &AccuracyRequest::default())
+        .draw(&view, &stack, &unpinned())
         .block_on()
         .expect("a frame");
     let report = renderer.finish().block_on().expect("stats");
     assert_eq!((report.counters.full_pixels, report.redraw), (4, false));
     // One layer fewer than too many is right.
     let scene = pile(count - 2);
-    let (capture, _) = exact(
-        &mut renderer,
-        &scene,
-        &view,
-        &stack,
-        &AccuracyRequest::default(),
-        "as many as fit",
-    );
+    let (capture, _) = renderer.exact(&scene, &view, &stack, &unpinned(), "as many as fit");
     assert_eq!(
         capture.frame.layer_sums,
         vec![(count - 2) * xray::FULL_WEIGHT; 4]
     );
 }
 
-#[test]
-fn windows_weights_and_opacities_are_the_oracles() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+fn windows_weights_and_opacities_are_the_oracles(reach: Reach) {
+    let Some(mut renderer) = loan() else { return };
     let flat = (scene_from(&soup(3, 120, 48, 0.6)), pixel_view(48, 48));
     let knot = scene("knot?tess=6");
     let deep = (knot.clone(), view(&knot, [120, 90]));
     let hall = scene("near");
     let cut = (hall.clone(), view(&hall, [96, 72]));
-    let options = options(&renderer);
+    let options = reach.options(&renderer);
     let windows = [
         "xray.layers=all",
         "xray.layers=window,xray.window=0",
         "xray.layers=window,xray.window=30",
         "xray.layers=window,xray.window=500",
     ];
-    for (turn, weight) in ["equal", "facing", "grazing", "near"]
-        .into_iter()
-        .enumerate()
-    {
+    let weights = reach.of(2, ["facing", "near", "equal", "grazing"]);
+    for (turn, weight) in weights.into_iter().enumerate() {
         for (i, window) in windows.iter().enumerate() {
             let weight = format!("xray.weight={weight}");
             let mut values = vec![
@@ -263,8 +245,7 @@ fn windows_weights_and_opacities_are_the_oracles() {
             let (what, (scene, view)) =
                 [("soup", &flat), ("knot", &deep), ("hall", &cut)][(i + turn) % 3];
             let what = format!("{what} {values:?}");
-            let (_, verdict) = exact(
-                &mut renderer,
+            let (_, verdict) = renderer.exact(
                 scene,
                 view,
                 &stack,
@@ -285,22 +266,17 @@ fn windows_weights_and_opacities_are_the_oracles() {
     }
     // A window of nothing is the front alone, for everything behind it.
     let (scene, view) = &deep;
-    let bare = captured(
-        &mut renderer,
-        scene,
-        view,
-        &with(&["normals"]),
-        &AccuracyRequest::default(),
-    )
-    .frame;
-    let front = captured(
-        &mut renderer,
-        scene,
-        view,
-        &with(&["normals", "xray.layers=window", "xray.window=0"]),
-        &AccuracyRequest::default(),
-    )
-    .frame;
+    let bare = renderer
+        .captured(scene, view, &with(&["normals"]), &unpinned())
+        .frame;
+    let front = renderer
+        .captured(
+            scene,
+            view,
+            &with(&["normals", "xray.layers=window", "xray.window=0"]),
+            &unpinned(),
+        )
+        .frame;
     assert_eq!(front.triangle_id, bare.triangle_id);
     let delta = rasterlab::measure::compare::pictures(&front.color, &bare.color, 1);
     assert!(
@@ -312,29 +288,20 @@ fn windows_weights_and_opacities_are_the_oracles() {
 
 // -------- race
 
-#[test]
-fn a_race_is_exact_where_one_layer_covers_and_elsewhere_a_covering_triangle_wins() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+fn a_race_is_exact_where_one_layer_covers_and_elsewhere_a_covering_triangle_wins(reach: Reach) {
+    let Some(mut renderer) = loan() else { return };
     let lonely = scene("grid?cell=1");
     let view_of = |scene: &Arc<Scene>| view(scene, [160, 120]);
-    let (capture, verdict) = exact(
-        &mut renderer,
+    let (capture, verdict) = renderer.exact(
         &lonely,
         &view_of(&lonely),
         &stack(&["race"]),
-        &AccuracyRequest::default(),
+        &unpinned(),
         "one layer",
     );
-    let alone = captured(
-        &mut renderer,
-        &lonely,
-        &view_of(&lonely),
-        &stack(&[]),
-        &AccuracyRequest::default(),
-    )
-    .frame;
+    let alone = renderer
+        .captured(&lonely, &view_of(&lonely), &stack(&[]), &unpinned())
+        .frame;
     assert_eq!(
         (verdict.report.race_pixels, &capture.frame.triangle_id),
         (0, &alone.triangle_id)
@@ -342,18 +309,12 @@ fn a_race_is_exact_where_one_layer_covers_and_elsewhere_a_covering_triangle_wins
 
     let crowded = scene_from(&soup(5, 400, 64, 1.0));
     let view = pixel_view(64, 64);
-    for tuning in tunings() {
+    for tuning in reach.of(1, tunings()) {
         renderer.set_tuning(tuning);
         for delay in [0, 4] {
             let stack = with(&["race", &format!("race.delay={delay}")]);
-            let (_, verdict) = exact(
-                &mut renderer,
-                &crowded,
-                &view,
-                &stack,
-                &AccuracyRequest::default(),
-                &format!("{tuning:?}"),
-            );
+            let (_, verdict) =
+                renderer.exact(&crowded, &view, &stack, &unpinned(), &format!("{tuning:?}"));
             eprintln!(
                 "delay {delay}, {tuning:?}: {} of {} pixels lost",
                 verdict.report.race_pixels, verdict.report.pixels
@@ -364,18 +325,10 @@ fn a_race_is_exact_where_one_layer_covers_and_elsewhere_a_covering_triangle_wins
 
 #[test]
 fn the_judge_counts_what_a_race_lost_and_refuses_what_it_cannot_lose() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let scene = scene_from(&soup(5, 60, 32, 1.0));
     let (view, plain, racing) = (pixel_view(32, 32), stack(&[]), stack(&["race"]));
-    let capture = captured(
-        &mut renderer,
-        &scene,
-        &view,
-        &plain,
-        &AccuracyRequest::default(),
-    );
+    let capture = renderer.captured(&scene, &view, &plain, &unpinned());
     let judge = |frame: &rasterlab::frame::Frame, stack: &Stack| {
         oracle::judge(
             &scene,
@@ -585,11 +538,8 @@ fn mutants() -> Vec<Mutant> {
     ]
 }
 
-#[test]
-fn layers_with_a_mistake_are_caught() {
-    let Some(mut healthy) = renderer() else {
-        return;
-    };
+fn layers_with_a_mistake_are_caught(reach: Reach) {
+    let Some(mut healthy) = loan() else { return };
     // Dark, because steps of linear light are widest there.
     let (scene, view): (Arc<Scene>, View) =
         (scene_from(&soup(11, 60, 48, 0.08)), pixel_view(48, 48));
@@ -604,26 +554,19 @@ fn layers_with_a_mistake_are_caught() {
         to,
         stack,
         shown_by: (figure, shown_by),
-    } in mutants()
+    } in reach.of(3, mutants())
     {
-        exact(
-            &mut healthy,
+        healthy.exact(
             &scene,
             &view,
             &stack,
-            &pinned(Visibility::Split32),
+            &split32(),
             &format!("without the mistake: {what}"),
         );
         let library = mutated(from, to);
         let mut wrong = Renderer::with_library(healthy.gpu().clone(), library.shaders());
         wrong.set_tuning(tuning);
-        let (_, verdict) = judged(
-            &mut wrong,
-            &scene,
-            &view,
-            &stack,
-            &pinned(Visibility::Split32),
-        );
+        let (_, verdict) = wrong.judged(&scene, &view, &stack, &split32());
         eprintln!(
             "{what}: {}",
             exactness(&verdict.report).err().unwrap_or_default()
@@ -638,11 +581,8 @@ fn layers_with_a_mistake_are_caught() {
     assert!(failures.is_empty(), "{}", failures.join("\n"));
 }
 
-#[test]
-fn a_card_lists_the_covered_samples_of_a_small_box_and_draws_each_of_them() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+fn a_card_lists_the_covered_samples_of_a_small_box_and_draws_each_of_them(reach: Reach) {
+    let Some(mut renderer) = loan() else { return };
     // No box has more than the 32 pixels of the picture.
     let (scene, view, stack) = (
         scene_from(&soup(5, 120, 7, 0.08)),
@@ -656,17 +596,12 @@ fn a_card_lists_the_covered_samples_of_a_small_box_and_draws_each_of_them() {
         specialized: true,
         ..usual
     };
-    for option in options(&renderer) {
-        let whole = captured(&mut renderer, &scene, &view, &stack, &pinned(option)).frame;
+    for option in reach.options(&renderer) {
+        let whole = renderer
+            .captured(&scene, &view, &stack, &pinned(option))
+            .frame;
         renderer.set_tuning(card);
-        let (listed, _) = exact(
-            &mut renderer,
-            &scene,
-            &view,
-            &stack,
-            &pinned(option),
-            option.name(),
-        );
+        let (listed, _) = renderer.exact(&scene, &view, &stack, &pinned(option), option.name());
         renderer.set_tuning(usual);
         assert_eq!(
             (&listed.frame.color, &listed.frame.layer_sums),
@@ -690,3 +625,11 @@ fn every_effect_of_the_slot_is_known_to_the_planner() {
         );
     }
 }
+
+few_and_all!(
+    the_average_is_bit_equal_in_any_order_on_every_run_option_and_tuning,
+    windows_weights_and_opacities_are_the_oracles,
+    a_race_is_exact_where_one_layer_covers_and_elsewhere_a_covering_triangle_wins,
+    layers_with_a_mistake_are_caught,
+    a_card_lists_the_covered_samples_of_a_small_box_and_draws_each_of_them,
+);

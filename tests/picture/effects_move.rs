@@ -6,7 +6,6 @@ use std::sync::Arc;
 
 use glam::{DMat3, DVec2, DVec3};
 use rasterlab::{
-    accuracy::Visibility,
     effects::{
         Effect, Stack,
         hooks::{ErrorBound, Vertex},
@@ -85,11 +84,10 @@ fn lit(mut stack: Stack) -> Stack {
     stack
 }
 
-#[test]
-fn all_moving_effects_together_are_exact_far_from_the_origin_inside_and_in_parallel_rays() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+fn all_moving_effects_together_are_exact_far_from_the_origin_inside_and_in_parallel_rays(
+    reach: Reach,
+) {
+    let Some(mut renderer) = loan() else { return };
     let mut far = Scene::clone(&scene("knot?tess=6"));
     let offset = DVec3::new(1e4, -2e4, 1e4);
     far.instances[0].world_from_object =
@@ -120,9 +118,8 @@ fn all_moving_effects_together_are_exact_far_from_the_origin_inside_and_in_paral
         set(&mut stack, "explode", "amount_m", &[0.1]);
         for (pattern, name) in ["uniform", "sweep", "radial", "random"].iter().enumerate() {
             set(&mut stack, "explode", "pattern", &[pattern as f64]);
-            for option in options(&renderer) {
-                exact(
-                    &mut renderer,
+            for option in reach.options(&renderer) {
+                renderer.exact(
                     &scene,
                     &view,
                     &stack,
@@ -134,8 +131,7 @@ fn all_moving_effects_together_are_exact_far_from_the_origin_inside_and_in_paral
     }
 }
 
-#[test]
-fn an_effect_that_moves_nothing_changes_nothing() {
+fn an_effect_that_moves_nothing_changes_nothing(reach: Reach) {
     for query in ["cube-wall", "near"] {
         let scene = scene(query);
         let view = view(&scene, [160, 120]);
@@ -150,9 +146,7 @@ fn an_effect_that_moves_nothing_changes_nothing() {
             );
         }
     }
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let usual = renderer.gpu().caps.tuning();
     for query in ["cube-wall", "near"] {
         let scene = scene(query);
@@ -162,21 +156,10 @@ fn an_effect_that_moves_nothing_changes_nothing() {
             specialized: false,
             ..usual
         });
-        let none = captured(
-            &mut renderer,
-            &scene,
-            &view,
-            &lit(Stack::default()),
-            &pinned(Visibility::Split32),
-        );
-        for effect in MOVING {
-            let resting = captured(
-                &mut renderer,
-                &scene,
-                &view,
-                &lit(resting(effect, &scene)),
-                &pinned(Visibility::Split32),
-            );
+        let none = renderer.captured(&scene, &view, &lit(Stack::default()), &split32());
+        for effect in reach.of(1, MOVING) {
+            let resting =
+                renderer.captured(&scene, &view, &lit(resting(effect, &scene)), &split32());
             assert_eq!(resting.frame, none.frame, "{query} {effect}");
         }
     }
@@ -196,23 +179,13 @@ fn telescope() -> (Arc<Scene>, View) {
 }
 
 /// Shares of its stated bound that an adapter uses, seen through a telescope.
-#[test]
-fn stated_bounds_hold_under_a_telescope_and_are_not_idle() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+fn stated_bounds_hold_under_a_telescope_and_are_not_idle(reach: Reach) {
+    let Some(mut renderer) = loan() else { return };
     let (scene, view) = telescope();
     let draws = draws(&scene, &view).expect("a builtin fits");
-    for effect in MOVING {
+    for effect in reach.of(1, MOVING) {
         let stack = suited(effect, &scene);
-        let (capture, _) = exact(
-            &mut renderer,
-            &scene,
-            &view,
-            &stack,
-            &pinned(Visibility::Split32),
-            effect,
-        );
+        let (capture, _) = renderer.exact(&scene, &view, &stack, &split32(), effect);
         let reference = oracle::project(&oracle::Shot::new(&scene, &draws, &view, &stack))
             .expect("nobody cancels it");
         let bounds = oracle::snap_bounds(&oracle::Shot::new(&scene, &draws, &view, &stack));
@@ -381,8 +354,7 @@ fn exploding_and_turning_keeps_every_triangle_and_its_area() {
     }
 }
 
-#[test]
-fn corners_snap_to_cells_and_the_adapter_agrees_on_each() {
+fn corners_snap_to_cells_and_the_adapter_agrees_on_each(reach: Reach) {
     const CELL_PX: i32 = 6;
     let size = [200, 150];
     let mut stack = lit(stack(&["wobble", "psx"]));
@@ -407,7 +379,7 @@ fn corners_snap_to_cells_and_the_adapter_agrees_on_each() {
         projection: Projection::Orthographic { height_m: 3.0 },
         ..Camera::default()
     };
-    let mut renderer = renderer();
+    let mut renderer = loan();
     for (what, query, camera) in [
         ("in front", "knot?tess=6", Camera::default()),
         ("inside the mesh", "sphere?triangles=3000", inside),
@@ -421,9 +393,9 @@ fn corners_snap_to_cells_and_the_adapter_agrees_on_each() {
         let Some(renderer) = &mut renderer else {
             continue;
         };
-        for option in options(renderer) {
+        for option in reach.options(renderer) {
             let (what, pins) = (format!("{what}, {}", option.name()), pinned(option));
-            let (capture, verdict) = judged(renderer, &scene, &view, &stack, &pins);
+            let (capture, verdict) = renderer.judged(&scene, &view, &stack, &pins);
             let judgement = verdict.report.within(&Budget::default());
             assert_eq!(judgement, Ok(()), "{what}: {:?}", verdict.report);
             assert!(on_grid(&capture.geometry), "{what}");
@@ -491,11 +463,8 @@ fn still_life(query: &str) -> (Arc<Scene>, View) {
     (scene, view)
 }
 
-#[test]
-fn kernels_that_move_wrongly_are_caught() {
-    let Some(mut healthy) = renderer() else {
-        return;
-    };
+fn kernels_that_move_wrongly_are_caught(reach: Reach) {
+    let Some(mut healthy) = loan() else { return };
     let mutants = [
         (
             "a wave turns normals the wrong way",
@@ -523,7 +492,7 @@ fn kernels_that_move_wrongly_are_caught() {
         ),
     ];
     let mut failures = Vec::new();
-    for (what, effect, from, to) in mutants {
+    for (what, effect, from, to) in reach.of(2, mutants) {
         let (scene, view) = match what {
             "the last term of the sine is halved" => telescope(),
             "movement is forgotten where triangles are clipped" => still_life("near"),
@@ -533,23 +502,16 @@ fn kernels_that_move_wrongly_are_caught() {
         if effect == "wobble" {
             set(&mut stack, effect, "amplitude_m", &[0.15]);
         }
-        exact(
-            &mut healthy,
+        healthy.exact(
             &scene,
             &view,
             &stack,
-            &pinned(Visibility::Split32),
+            &split32(),
             &format!("without the mistake: {what}"),
         );
         let library = mutated(from, to);
         let mut wrong = Renderer::with_library(healthy.gpu().clone(), library.shaders());
-        let (_, verdict) = judged(
-            &mut wrong,
-            &scene,
-            &view,
-            &stack,
-            &pinned(Visibility::Split32),
-        );
+        let (_, verdict) = wrong.judged(&scene, &view, &stack, &split32());
         match exactness(&verdict.report) {
             Ok(()) => failures.push(what),
             Err(faults) => eprintln!("{what}: {faults}"),
@@ -557,3 +519,11 @@ fn kernels_that_move_wrongly_are_caught() {
     }
     assert_eq!(failures, Vec::<&str>::new(), "not caught");
 }
+
+few_and_all!(
+    all_moving_effects_together_are_exact_far_from_the_origin_inside_and_in_parallel_rays,
+    corners_snap_to_cells_and_the_adapter_agrees_on_each,
+    stated_bounds_hold_under_a_telescope_and_are_not_idle,
+    an_effect_that_moves_nothing_changes_nothing,
+    kernels_that_move_wrongly_are_caught,
+);

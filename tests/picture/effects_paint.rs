@@ -6,7 +6,6 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3, DVec4};
 use pollster::FutureExt as _;
 use rasterlab::{
-    accuracy::Visibility,
     effects::{
         Effect, Stack, Surface,
         hooks::{Picture, Pixel},
@@ -15,7 +14,6 @@ use rasterlab::{
     gpu::Renderer,
     measure::compare::pictures,
     oracle,
-    plan::AccuracyRequest,
     preset::{Clock, Preset, SceneSource},
     scene::{Scene, view::View},
 };
@@ -51,11 +49,10 @@ fn drawn(scene: &Scene, view: &View, stack: &Stack) -> Frame {
 
 // -------- every effect against the oracle
 
-#[test]
-fn fog_thins_out_by_the_height_on_the_ray_of_a_pixel_and_not_by_that_of_snapped_corners() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+fn fog_thins_out_by_the_height_on_the_ray_of_a_pixel_and_not_by_that_of_snapped_corners(
+    reach: Reach,
+) {
+    let Some(mut renderer) = loan() else { return };
     // Pixels of 3.6 m, and fog that ends in a tenth of one: half a unit of snapping is several
     // steps of 255 in row 35.
     let fog = [
@@ -73,9 +70,8 @@ fn fog_thins_out_by_the_height_on_the_ray_of_a_pixel_and_not_by_that_of_snapped_
         .concat(),
     );
     let scene = scene("sizes");
-    for option in options(&renderer) {
-        exact(
-            &mut renderer,
+    for option in reach.options(&renderer) {
+        renderer.exact(
             &scene,
             &view(&scene, SIZE),
             &stack,
@@ -85,22 +81,14 @@ fn fog_thins_out_by_the_height_on_the_ray_of_a_pixel_and_not_by_that_of_snapped_
     }
 }
 
-#[test]
-fn what_is_off_leaves_no_trace_to_the_bit() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+fn what_is_off_leaves_no_trace_to_the_bit(reach: Reach) {
+    let Some(mut renderer) = loan() else { return };
     let scene = scene("knot?tess=10");
     let view = view(&scene, SIZE);
-    let bare = captured(
-        &mut renderer,
-        &scene,
-        &view,
-        &stack(&["lambert"]),
-        &pinned(Visibility::Split32),
-    )
-    .frame
-    .color;
+    let bare = renderer
+        .captured(&scene, &view, &stack(&["lambert"]), &split32())
+        .frame
+        .color;
     let off: [&[(&str, &str, f64)]; 6] = [
         &[("fog", "density", 0.0)],
         &[("posterize", "amount", 0.0)],
@@ -113,17 +101,12 @@ fn what_is_off_leaves_no_trace_to_the_bit() {
         &[("outline", "color", 0.0)],
         &[("smear", "fade", 1.0)],
     ];
-    for settings in off {
+    for settings in reach.of(2, off) {
         let stack = with(&[&[("lambert", "", 0.0)], settings].concat());
-        let color = captured(
-            &mut renderer,
-            &scene,
-            &view,
-            &stack,
-            &pinned(Visibility::Split32),
-        )
-        .frame
-        .color;
+        let color = renderer
+            .captured(&scene, &view, &stack, &split32())
+            .frame
+            .color;
         assert!(
             color == bare,
             "{settings:?} changes {:?}",
@@ -389,21 +372,13 @@ fn mirrored(values: &[u32], width: usize) -> Vec<u32> {
         .collect()
 }
 
-#[test]
-fn a_step_of_depth_of_exactly_the_threshold_is_no_line() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+fn a_step_of_depth_of_exactly_the_threshold_is_no_line(reach: Reach) {
+    let Some(mut renderer) = loan() else { return };
     let scene = scene("knot?tess=6");
     let view = view(&scene, SIZE);
-    let frame = captured(
-        &mut renderer,
-        &scene,
-        &view,
-        &Stack::default(),
-        &AccuracyRequest::default(),
-    )
-    .frame;
+    let frame = renderer
+        .captured(&scene, &view, &Stack::default(), &unpinned())
+        .frame;
     let width = SIZE[0] as usize;
     let curvature = |i: usize, step: usize| {
         let covered = [i - step, i, i + step]
@@ -412,7 +387,7 @@ fn a_step_of_depth_of_exactly_the_threshold_is_no_line() {
         let [before, here, after] = [i - step, i, i + step].map(|i| i64::from(frame.depth_key[i]));
         covered.then_some(before + after - 2 * here)
     };
-    for side in [0.0, 1.0, 2.0] {
+    for side in reach.of(1, [0.0, 1.0, 2.0]) {
         // A pixel with a step across that the effect's range contains, and with less down.
         let steps = (width + 1..frame.depth_key.len() - width - 1)
             .filter(|i| ![0, width - 1].contains(&(i % width)))
@@ -433,12 +408,11 @@ fn a_step_of_depth_of_exactly_the_threshold_is_no_line() {
             ("outline", "width_px", 1.0),
             ("outline", "depth_threshold", threshold),
         ]);
-        exact(
-            &mut renderer,
+        renderer.exact(
             &scene,
             &view,
             &stack,
-            &AccuracyRequest::default(),
+            &unpinned(),
             &format!("side {side}, a step of {step}"),
         );
     }
@@ -590,11 +564,8 @@ fn spinning(fade: f64) -> Preset {
     preset
 }
 
-#[test]
-fn a_trail_is_exact_and_bit_equal_on_repeats_and_with_every_option() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+fn a_trail_is_exact_and_bit_equal_on_repeats_and_with_every_option(reach: Reach) {
+    let Some(mut renderer) = loan() else { return };
     let scene = scene("knot?tess=6");
     let preset = spinning(0.2);
     let bare = drawn(
@@ -608,15 +579,15 @@ fn a_trail_is_exact_and_bit_equal_on_repeats_and_with_every_option() {
         .filter(|&i| reference.triangle_id[i] == NO_TRIANGLE && reference.color[i] != bare.color[i])
         .count();
     assert!(trail > 200, "{trail} pixels of trail");
-    for option in options(&renderer) {
-        let (capture, verdict) = judged_preset(&mut renderer, &scene, &preset, &pinned(option));
+    for option in reach.options(&renderer) {
+        let (capture, verdict) = renderer.judged_preset(&scene, &preset, &pinned(option));
         exactness(&verdict.report).unwrap_or_else(|why| panic!("{}: {why}", option.name()));
         let far = pictures(&capture.frame.color, &reference.color, 1);
         assert!(
             far.pixels_over_tolerance <= 2,
             "the oracle replays the same: {far:?}"
         );
-        let (again, _) = judged_preset(&mut renderer, &scene, &preset, &pinned(option));
+        let (again, _) = renderer.judged_preset(&scene, &preset, &pinned(option));
         assert!(
             again.frame == capture.frame && again.previous == capture.previous,
             "{}",
@@ -663,12 +634,10 @@ fn a_trail_fades_in_whole_steps_to_its_end_and_none_is_left_at_once_at_full_fade
 
 #[test]
 fn another_size_or_scene_begins_without_a_trail_and_drawing_again_adds_none() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let (knot, pot) = (scene("knot?tess=6"), scene("teapot?tess=3"));
     let smear = with(&[("lambert", "", 0.0), ("smear", "fade", 0.1)]);
-    let exact = pinned(Visibility::Split32);
+    let exact = split32();
     let turned = |scene: &Arc<Scene>, deg: f64| {
         let clock = Clock {
             time_s: deg,
@@ -713,9 +682,8 @@ fn another_size_or_scene_begins_without_a_trail_and_drawing_again_adds_none() {
 
 // -------- mutants
 
-#[test]
-fn effects_with_a_mistake_are_caught() {
-    let Some(healthy) = renderer() else { return };
+fn effects_with_a_mistake_are_caught(reach: Reach) {
+    let Some(healthy) = loan() else { return };
     let gpu = healthy.gpu().clone();
     let scene = scene("knot?tess=10");
     let view = view(&scene, SIZE);
@@ -743,25 +711,14 @@ fn effects_with_a_mistake_are_caught() {
         ),
         ("smear", "fraction + 65535", "fraction * 2 + 65535"),
     ];
-    for (name, from, to) in mutants {
+    for (name, from, to) in reach.of(3, mutants) {
         let library = mutated(from, to);
         let mut wrong = Renderer::with_library(gpu.clone(), library.shaders());
         let stack = with(&[("lambert", "", 0.0), coarse(name)]);
         let (_, verdict) = if name == "smear" {
-            judged_preset(
-                &mut wrong,
-                &scene,
-                &spinning(0.2),
-                &pinned(Visibility::Split32),
-            )
+            wrong.judged_preset(&scene, &spinning(0.2), &split32())
         } else {
-            judged(
-                &mut wrong,
-                &scene,
-                &view,
-                &stack,
-                &pinned(Visibility::Split32),
-            )
+            wrong.judged(&scene, &view, &stack, &split32())
         };
         assert!(
             verdict.report.max_color_delta > 1,
@@ -770,3 +727,11 @@ fn effects_with_a_mistake_are_caught() {
         );
     }
 }
+
+few_and_all!(
+    fog_thins_out_by_the_height_on_the_ray_of_a_pixel_and_not_by_that_of_snapped_corners,
+    a_trail_is_exact_and_bit_equal_on_repeats_and_with_every_option,
+    what_is_off_leaves_no_trace_to_the_bit,
+    effects_with_a_mistake_are_caught,
+    a_step_of_depth_of_exactly_the_threshold_is_no_line,
+);

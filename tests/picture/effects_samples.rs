@@ -329,23 +329,19 @@ fn a_draw_order_draws_n_samples_and_one_more_with_every_step() {
     }
 }
 
-#[test]
-fn a_scheduler_draws_as_many_samples_as_it_should_and_only_right_ones() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+fn a_scheduler_draws_as_many_samples_as_it_should_and_only_right_ones(reach: Reach) {
+    let Some(mut renderer) = loan() else { return };
     let scene = scene("cube-wall");
     let view = view(&scene, [160, 120]);
     let total = sum(&Drawn::of(&scene, &view, &Stack::default()).layers(&view, &Stack::default()));
-    for option in options(&renderer) {
+    for option in reach.options(&renderer) {
         for limit in [0, 1, total / 2, total, total + 100] {
             let stack = only(
                 "draw_order",
                 &[("mode", 1.0), ("unit", 1.0), ("limit", limit as f64)],
             );
             assert!(!stack.is_repeatable());
-            let (capture, _) = exact(
-                &mut renderer,
+            let (capture, _) = renderer.exact(
                 &scene,
                 &view,
                 &stack,
@@ -358,11 +354,8 @@ fn a_scheduler_draws_as_many_samples_as_it_should_and_only_right_ones() {
     }
 }
 
-#[test]
-fn kernels_with_a_mistake_are_caught() {
-    let Some(mut healthy) = renderer() else {
-        return;
-    };
+fn kernels_with_a_mistake_are_caught(reach: Reach) {
+    let Some(mut healthy) = loan() else { return };
     let card = tunings()[2];
     healthy.set_tuning(card);
     let mutants = [
@@ -406,10 +399,9 @@ fn kernels_with_a_mistake_are_caught() {
     let scene = scene("sphere?triangles=5000");
     let view = view(&scene, [128, 96]);
     let mut failures = Vec::new();
-    for (what, from, to, stack) in mutants {
+    for (what, from, to, stack) in reach.of(2, mutants) {
         let option = pinned(rasterlab::accuracy::Visibility::Split32);
-        exact(
-            &mut healthy,
+        healthy.exact(
             &scene,
             &view,
             &stack,
@@ -420,10 +412,15 @@ fn kernels_with_a_mistake_are_caught() {
         let mut wrong =
             rasterlab::gpu::Renderer::with_library(healthy.gpu().clone(), library.shaders());
         wrong.set_tuning(card);
-        let (_, verdict) = judged(&mut wrong, &scene, &view, &stack, &option);
+        let (_, verdict) = wrong.judged(&scene, &view, &stack, &option);
         if exactness(&verdict.report).is_ok() {
             failures.push(what);
         }
     }
     assert!(failures.is_empty(), "these do not show: {failures:?}");
 }
+
+few_and_all!(
+    a_scheduler_draws_as_many_samples_as_it_should_and_only_right_ones,
+    kernels_with_a_mistake_are_caught,
+);

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use pollster::FutureExt as _;
 use rasterlab::{
-    accuracy::{AxisOption as _, DepthFormat, Transparency, VertexTransform, Visibility},
+    accuracy::{AxisOption as _, DepthFormat, Transparency, VertexTransform},
     effects::Stack,
     gpu::{Capture, RenderError, Renderer},
     math::srgb_byte,
@@ -64,16 +64,12 @@ fn soup_view() -> View {
     pixel_view(32, 32)
 }
 
-#[test]
-fn every_exact_option_composes_crossing_layers_as_the_oracle_does() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+fn every_exact_option_composes_crossing_layers_as_the_oracle_does(reach: Reach) {
+    let Some(mut renderer) = loan() else { return };
     let (scene, view) = (soup(&(0..40).collect::<Vec<_>>()), soup_view());
     let mut first = None;
-    for option in options(&renderer) {
-        let (capture, verdict) = exact(
-            &mut renderer,
+    for option in reach.of(2, options(&renderer)) {
+        let (capture, verdict) = renderer.exact(
             &scene,
             &view,
             &Stack::default(),
@@ -98,9 +94,7 @@ fn every_exact_option_composes_crossing_layers_as_the_oracle_does() {
 
 #[test]
 fn tinted_layers_cover_a_translucent_background_as_far_as_they_dim_it() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let (scene, mut view) = (soup(&(0..40).collect::<Vec<_>>()), soup_view());
     view.background = [0.2, 0.5, 0.8, 0.25].into();
     let mut stack = stack(&["glass"]);
@@ -109,7 +103,7 @@ fn tinted_layers_cover_a_translucent_background_as_far_as_they_dim_it() {
     tint.set(&mut glass.words, &[0.9, 0.4, 0.1, 1.0])
         .expect("a color");
     let accuracy = AccuracyRequest::default();
-    let (capture, _) = exact(&mut renderer, &scene, &view, &stack, &accuracy, "tinted");
+    let (capture, _) = renderer.exact(&scene, &view, &stack, &accuracy, "tinted");
     let is_between = |color: &[u8; 4]| color[3] > 64 && color[3] < 255;
     assert!(
         capture
@@ -122,12 +116,9 @@ fn tinted_layers_cover_a_translucent_background_as_far_as_they_dim_it() {
     );
 }
 
-#[test]
-fn no_order_of_triangles_shows() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
-    for &transparency in Transparency::ALL {
+fn no_order_of_triangles_shows(reach: Reach) {
+    let Some(mut renderer) = loan() else { return };
+    for &transparency in reach.of(1, Transparency::ALL) {
         let mut strict = on(transparency);
         strict.pins = strict
             .pins
@@ -139,7 +130,8 @@ fn no_order_of_triangles_shows() {
             let (scene, view) = (soup(&order), soup_view());
             let stack = Stack::default();
             pictures.push(
-                captured(&mut renderer, &scene, &view, &stack, &strict)
+                renderer
+                    .captured(&scene, &view, &stack, &strict)
                     .frame
                     .color,
             );
@@ -162,12 +154,10 @@ fn on(transparency: Transparency) -> AccuracyRequest {
 
 #[test]
 fn fewer_layers_and_no_order_err_in_color_alone_and_only_where_layers_lie_behind_one_another() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let scene = scene("panes?sheets=9");
     let (view, stack) = (view(&scene, [96, 72]), stack(&["lambert"]));
-    let mut drawn = |option| judged(&mut renderer, &scene, &view, &stack, &on(option));
+    let mut drawn = |option| renderer.judged(&scene, &view, &stack, &on(option));
     let (exact, _) = drawn(Transparency::Exact);
     let counts = exact.frame.glass.counts();
     for (option, most_exact) in [
@@ -196,9 +186,7 @@ fn fewer_layers_and_no_order_err_in_color_alone_and_only_where_layers_lie_behind
 
 #[test]
 fn what_is_drawn_as_if_opaque_is_what_does_not_blend() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let blended = scene("panes");
     let view = view(&blended, [96, 72]);
     let mut opaque = (*blended).clone();
@@ -207,8 +195,7 @@ fn what_is_drawn_as_if_opaque_is_what_does_not_blend() {
     }
     let opaque = Arc::new(opaque);
     let stack = stack(&["lambert", "outline"]);
-    let mut drawn =
-        |scene, option| captured(&mut renderer, scene, &view, &stack, &on(option)).frame;
+    let mut drawn = |scene, option| renderer.captured(scene, &view, &stack, &on(option)).frame;
     let (seen, without) = (
         drawn(&blended, Transparency::Opaque),
         drawn(&opaque, Transparency::Exact),
@@ -252,7 +239,9 @@ fn wrongly_composed(renderer: &mut Renderer, option: Transparency, exact: &Captu
     let triangles = soup_triangles(count);
     let scene = soup(&(0..count).collect::<Vec<_>>());
     let view = soup_view();
-    let frame = captured(renderer, &scene, &view, &Stack::default(), &on(option)).frame;
+    let frame = renderer
+        .captured(&scene, &view, &Stack::default(), &on(option))
+        .frame;
     let lists = &exact.frame.glass;
     let is_wrong = |pixel: &usize| {
         if lists.behind[*pixel] != count as u32 {
@@ -270,19 +259,10 @@ fn wrongly_composed(renderer: &mut Renderer, option: Transparency, exact: &Captu
     (0..frame.color.len()).filter(is_wrong).count()
 }
 
-#[test]
-fn every_option_composes_as_it_says_and_mistakes_in_it_are_caught() {
-    let Some(mut healthy) = renderer() else {
-        return;
-    };
+fn every_option_composes_as_it_says_and_mistakes_in_it_are_caught(reach: Reach) {
+    let Some(mut healthy) = loan() else { return };
     let (scene, view) = (soup(&(0..40).collect::<Vec<_>>()), soup_view());
-    let exact = captured(
-        &mut healthy,
-        &scene,
-        &view,
-        &Stack::default(),
-        &AccuracyRequest::default(),
-    );
+    let exact = healthy.captured(&scene, &view, &Stack::default(), &unpinned());
     for option in [
         Transparency::Weighted,
         Transparency::Nearest4,
@@ -293,7 +273,7 @@ fn every_option_composes_as_it_says_and_mistakes_in_it_are_caught() {
     }
     let (nearest4, weighted) = (Transparency::Nearest4, Transparency::Weighted);
     let mut missed = Vec::new();
-    for (option, what, from, to) in [
+    let mistakes = [
         (
             nearest4,
             "a layer too many",
@@ -330,7 +310,8 @@ fn every_option_composes_as_it_says_and_mistakes_in_it_are_caught() {
             "if first == 0u || glass_is_before(link, first)",
             "if first == 0u || !glass_is_before(link, first)",
         ),
-    ] {
+    ];
+    for (option, what, from, to) in reach.of(2, mistakes) {
         let library = mutated(from, to);
         let mut wrong = Renderer::with_library(healthy.gpu().clone(), library.shaders());
         if wrongly_composed(&mut wrong, option, &exact) == 0 {
@@ -342,20 +323,12 @@ fn every_option_composes_as_it_says_and_mistakes_in_it_are_caught() {
 
 #[test]
 fn bands_of_pixels_draw_the_same_picture_in_less_memory() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let (scene, stack) = (soup(&(0..40).collect::<Vec<_>>()), Stack::default());
     // Rows of other lengths than bands, so that bands begin and end inside rows.
     let view = pixel_view(32, 32);
     let usual = renderer.gpu().caps.tuning();
-    let whole = captured(
-        &mut renderer,
-        &scene,
-        &view,
-        &stack,
-        &AccuracyRequest::default(),
-    );
+    let whole = renderer.captured(&scene, &view, &stack, &unpinned());
     let layers = whole.frame.glass.layers.len() as u32;
     let mut banded = Renderer::new(renderer.gpu().clone());
     for part in [3, 11] {
@@ -363,14 +336,7 @@ fn bands_of_pixels_draw_the_same_picture_in_less_memory() {
             glass_layers: layers / part,
             ..usual
         });
-        let (capture, _) = exact(
-            &mut banded,
-            &scene,
-            &view,
-            &stack,
-            &AccuracyRequest::default(),
-            "bands",
-        );
+        let (capture, _) = banded.exact(&scene, &view, &stack, &unpinned(), "bands");
         let bands = banded.key().map_or(0, |key| key.framebuffer.glass_bands);
         assert!(bands > part / 2, "{bands} bands for a {part}th of the room");
         assert_eq!(capture.frame.color, whole.frame.color, "{bands} bands");
@@ -378,7 +344,8 @@ fn bands_of_pixels_draw_the_same_picture_in_less_memory() {
     }
     for option in [Transparency::Weighted, Transparency::Nearest4] {
         let [at_once, in_bands] = [&mut renderer, &mut banded].map(|renderer| {
-            captured(renderer, &scene, &view, &stack, &on(option))
+            renderer
+                .captured(&scene, &view, &stack, &on(option))
                 .frame
                 .color
         });
@@ -389,35 +356,31 @@ fn bands_of_pixels_draw_the_same_picture_in_less_memory() {
         glass_layers: 2,
         ..usual
     });
-    let error = banded
-        .draw_complete(&view, &stack, &AccuracyRequest::default())
-        .block_on();
+    let error = banded.draw_complete(&view, &stack, &unpinned()).block_on();
     assert!(
         matches!(error, Err(RenderError::ManyLayers(_))),
         "{error:?}"
     );
 }
 
-#[test]
-fn mistakes_in_order_count_band_and_blend_are_caught() {
-    let Some(mut healthy) = renderer() else {
-        return;
-    };
+fn mistakes_in_order_count_band_and_blend_are_caught(reach: Reach) {
+    let Some(mut healthy) = loan() else { return };
     let (scene, view, stack) = (
         soup(&(0..40).collect::<Vec<_>>()),
         soup_view(),
         Stack::default(),
     );
-    let accuracy = pinned(Visibility::Split32);
+    let accuracy = split32();
     let usual = healthy.gpu().caps.tuning();
-    exact(&mut healthy, &scene, &view, &stack, &accuracy, "healthy");
-    let layers = captured(&mut healthy, &scene, &view, &stack, &accuracy)
+    healthy.exact(&scene, &view, &stack, &accuracy, "healthy");
+    let layers = healthy
+        .captured(&scene, &view, &stack, &accuracy)
         .frame
         .glass
         .layers
         .len() as u32;
     let mut missed = Vec::new();
-    for (what, from, to) in [
+    let mistakes = [
         (
             "farther layers come first",
             "return (keys > vec4u(key)) |",
@@ -453,7 +416,8 @@ fn mistakes_in_order_count_band_and_blend_are_caught() {
             "return (draws[t.draw].flags & DRAW_GLASS) == 0u;",
             "return true;",
         ),
-    ] {
+    ];
+    for (what, from, to) in reach.of(3, mistakes) {
         let library = mutated(from, to);
         let mut wrong = Renderer::with_library(healthy.gpu().clone(), library.shaders());
         wrong.set_tuning(Tuning {
@@ -481,11 +445,8 @@ fn mistakes_in_order_count_band_and_blend_are_caught() {
     assert!(missed.is_empty(), "not caught: {}", missed.join("; "));
 }
 
-#[test]
-fn glass_meets_other_effects() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+fn glass_meets_other_effects(reach: Reach) {
+    let Some(mut renderer) = loan() else { return };
     let (still, panes) = (scene("still-life?tess=1"), scene("panes"));
     let look = |text: &str| {
         preset_file::parse(&format!("schema = 2\n{text}"), "look")
@@ -494,34 +455,30 @@ fn glass_meets_other_effects() {
             .stack
     };
     let bottle = "[effects.glass]\non = [\"node:bottle\", \"node:jug\"]\n";
-    for (scene, text) in [
-        (
-            &still,
-            format!("{bottle}[effects.lambert]\n[effects.outline]\n[effects.dissolve]\n"),
-        ),
-        (
-            &still,
-            format!("{bottle}[effects.shadow]\n[effects.explode]\n[effects.facet]\n"),
-        ),
-        (
-            &panes,
-            "[effects.stipple]\n[effects.lambert]\n[effects.fog]\n".into(),
-        ),
-        (
-            &panes,
-            "[effects.glass]\n[effects.dots]\n[effects.wobble]\n".into(),
-        ),
-        (&panes, "[effects.xray]\n".into()),
-    ] {
+    for (scene, text) in reach.of(
+        2,
+        [
+            (
+                &still,
+                format!("{bottle}[effects.lambert]\n[effects.outline]\n[effects.dissolve]\n"),
+            ),
+            (
+                &still,
+                format!("{bottle}[effects.shadow]\n[effects.explode]\n[effects.facet]\n"),
+            ),
+            (
+                &panes,
+                "[effects.stipple]\n[effects.lambert]\n[effects.fog]\n".into(),
+            ),
+            (
+                &panes,
+                "[effects.glass]\n[effects.dots]\n[effects.wobble]\n".into(),
+            ),
+            (&panes, "[effects.xray]\n".into()),
+        ],
+    ) {
         let view = view(scene, [72, 54]);
-        exact(
-            &mut renderer,
-            scene,
-            &view,
-            &look(&text),
-            &AccuracyRequest::default(),
-            &text,
-        );
+        renderer.exact(scene, &view, &look(&text), &unpinned(), &text);
     }
 }
 
@@ -564,12 +521,12 @@ fn light_passes_through_glass() {
 
 #[test]
 fn small_bindings_divide_the_lists_of_pixels_too() {
-    let (Some(mut renderer), Some(mut own)) = (renderer(), own_gpu()) else {
+    let (Some(mut renderer), Some(mut own)) = (loan(), own_gpu()) else {
         return;
     };
     let (scene, stack) = (scene("panes?sheets=9"), stack(&["lambert"]));
     let (view, request) = (view(&scene, [128, 54]), AccuracyRequest::default());
-    let whole = captured(&mut renderer, &scene, &view, &stack, &request).frame;
+    let whole = renderer.captured(&scene, &view, &stack, &request).frame;
     // Sixteen bytes for every pixel and four for every tile of 8 x 8, as the picture takes with
     // what its layers compose to. Depths, ids and heads of all pixels leave no layer any room.
     let most = 16 * 128 * 54 + 4 * 16 * 7;
@@ -623,3 +580,11 @@ fn layers_make_do_with_the_memory_that_is_left() {
         "{bands} bands, {less} of {all} bytes"
     );
 }
+
+few_and_all!(
+    every_exact_option_composes_crossing_layers_as_the_oracle_does,
+    no_order_of_triangles_shows,
+    every_option_composes_as_it_says_and_mistakes_in_it_are_caught,
+    mistakes_in_order_count_band_and_blend_are_caught,
+    glass_meets_other_effects,
+);

@@ -12,7 +12,7 @@ use rasterlab::{
     preset::{Clock, Preset, SceneSource},
 };
 
-use super::common::{exactness, judged_preset, renderer, scene};
+use super::common::{Draws as _, exactness, loan, scene};
 
 const SIZE: [u32; 2] = [96, 72];
 
@@ -54,9 +54,7 @@ fn spinning(effects: &[Arc<Effect>]) -> Preset {
 
 #[test]
 fn a_kept_pass_reads_the_frame_before_and_its_picture_does_not_depend_on_what_was_drawn_earlier() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let scene = scene("knot?tess=6");
     let lambert = Effect::find("lambert").expect("it is built in").clone();
     let preset = spinning(&[lambert, trail()]);
@@ -68,11 +66,11 @@ fn a_kept_pass_reads_the_frame_before_and_its_picture_does_not_depend_on_what_wa
     let changed = pictures(&first.color, &reference.color, 1).pixels_over_tolerance;
     assert!(changed > 200, "{changed} pixels show earlier frames");
 
-    let (capture, verdict) = judged_preset(&mut renderer, &scene, &preset, &Default::default());
+    let (capture, verdict) = renderer.judged_preset(&scene, &preset, &Default::default());
     exactness(&verdict.report).unwrap_or_else(|why| panic!("{why}"));
     let far = pictures(&capture.frame.color, &reference.color, 1);
     assert!(far.pixels_over_tolerance <= 4, "{far:?}");
-    let (again, _) = judged_preset(&mut renderer, &scene, &preset, &Default::default());
+    let (again, _) = renderer.judged_preset(&scene, &preset, &Default::default());
     assert!(again.frame == capture.frame, "the same to the bit");
 
     let kept = capture.frame.kept.as_ref().expect("a pass is kept");
@@ -89,14 +87,12 @@ fn a_kept_pass_reads_the_frame_before_and_its_picture_does_not_depend_on_what_wa
 
 #[test]
 fn a_kept_pass_is_exact_where_more_pixels_are_drawn_than_shown() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let scene = scene("knot?tess=6");
     let mut preset = spinning(&[trail()]);
     preset.accuracy.pins = preset.accuracy.pins.with(RenderScale::Double);
     let accuracy = preset.accuracy;
-    let (capture, verdict) = judged_preset(&mut renderer, &scene, &preset, &accuracy);
+    let (capture, verdict) = renderer.judged_preset(&scene, &preset, &accuracy);
     exactness(&verdict.report).unwrap_or_else(|why| panic!("{why}"));
     let kept = capture.frame.kept.as_ref().expect("a pass is kept");
     assert_eq!(kept.after.len(), 96 * 72, "half of twice the size");

@@ -40,49 +40,33 @@ fn dark(lights: f32) -> Stack {
     stack
 }
 
-#[test]
-fn lamps_look_as_in_the_oracle_alone_through_glass_in_an_xray_and_behind_effects() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+fn lamps_look_as_in_the_oracle_alone_through_glass_in_an_xray_and_behind_effects(reach: Reach) {
+    let Some(mut renderer) = loan() else { return };
     let (scene, view) = balls(6);
     let option = pinned(quick_option(&renderer));
-    for effects in [
-        &["studio"][..],
-        &["studio", "tonemap", "fog"],
-        &["wobble", "studio", "toon"],
-        &["studio", "glass"],
-        &["studio", "xray"],
-    ] {
+    for effects in reach.of(
+        2,
+        [
+            &["studio"][..],
+            &["studio", "tonemap", "fog"],
+            &["wobble", "studio", "toon"],
+            &["studio", "glass"],
+            &["studio", "xray"],
+        ],
+    ) {
         let what = effects.join(" ");
-        exact(
-            &mut renderer,
-            &scene,
-            &view,
-            &stack(effects),
-            &option,
-            &what,
-        );
+        renderer.exact(&scene, &view, &stack(effects), &option, &what);
     }
-    exact(
-        &mut renderer,
-        &scene,
-        &view,
-        &dark(1.0),
-        &option,
-        "lamps alone",
-    );
+    renderer.exact(&scene, &view, &dark(1.0), &option, "lamps alone");
 }
 
 #[test]
 fn lamps_are_in_the_kernel_only_where_they_shine() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let option = pinned(quick_option(&renderer));
     let mut lights = |lamps: u32, effects: &[&str]| {
         let (scene, view) = balls(lamps);
-        judged(&mut renderer, &scene, &view, &stack(effects), &option);
+        renderer.judged(&scene, &view, &stack(effects), &option);
         let key = renderer.key().expect("something was drawn");
         let variants = key.variants(Pass::Resolve);
         let linked = link::link(&Library::Embedded, &Pass::Resolve.path(), key, &variants);
@@ -94,9 +78,8 @@ fn lamps_are_in_the_kernel_only_where_they_shine() {
     assert_eq!(lights(3, &["studio"]), (3, true));
 }
 
-#[test]
-fn mistakes_in_lamps_are_caught() {
-    let Some(healthy) = renderer() else {
+fn mistakes_in_lamps_are_caught(reach: Reach) {
+    let Some(healthy) = loan() else {
         return;
     };
     let (scene, view) = balls(3);
@@ -112,10 +95,10 @@ fn mistakes_in_lamps_are_caught() {
             "for (var i = 1u; i < PUNCTUAL_LIGHTS;",
         ),
     ];
-    for (from, to) in mistakes {
+    for (from, to) in reach.of(1, mistakes) {
         let library = mutated(from, to);
         let mut wrong = Renderer::with_library(healthy.gpu().clone(), library.shaders());
-        let (_, verdict) = judged(&mut wrong, &scene, &view, &stack, &option);
+        let (_, verdict) = wrong.judged(&scene, &view, &stack, &option);
         assert!(exactness(&verdict.report).is_err(), "{to}");
     }
 }
@@ -207,3 +190,8 @@ fn a_scene_without_its_lamps_is_the_scene_with_lamps_of_no_strength() {
     assert_eq!(draw(5, 0.0), none);
     assert_ne!(draw(5, 1.0), none);
 }
+
+few_and_all!(
+    lamps_look_as_in_the_oracle_alone_through_glass_in_an_xray_and_behind_effects,
+    mistakes_in_lamps_are_caught,
+);

@@ -1,5 +1,5 @@
 //! Promise: a look is the same at every size of the picture, and shows something on every model.
-//! Pictures of the oracle; they take a minute, so the continuous integration asks for them by name.
+//! Pictures of the oracle.
 
 use rasterlab::{
     accuracy::RenderScale,
@@ -92,7 +92,7 @@ fn difference(a: &[[f64; 3]], b: &[[f64; 3]]) -> f64 {
 }
 
 #[test]
-#[ignore = "takes a minute; .ci/run names it"]
+#[ignore = "slow: .ci/full"]
 fn every_preset_is_the_same_picture_at_half_and_at_two_and_three_times_its_size() {
     let failures: Vec<String> = gallery()
         .par_iter()
@@ -156,7 +156,7 @@ fn contrast(color: &[[u8; 4]]) -> f64 {
 }
 
 #[test]
-#[ignore = "takes a minute; .ci/run names it"]
+#[ignore = "slow: .ci/full"]
 fn every_look_shows_something_on_every_model() {
     let looks = gallery();
     let mut failures = Vec::new();

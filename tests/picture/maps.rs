@@ -28,11 +28,10 @@ fn balls(change: impl FnOnce(&mut Scene)) -> (Arc<Scene>, View) {
     (Arc::new(golf), view)
 }
 
-#[test]
-fn maps_look_as_in_the_oracle_on_mirrored_sheared_faceted_and_moved_surfaces_and_from_behind() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+fn maps_look_as_in_the_oracle_on_mirrored_sheared_faceted_and_moved_surfaces_and_from_behind(
+    reach: Reach,
+) {
+    let Some(mut renderer) = loan() else { return };
     let place = |scene: &mut Scene, matrix: DMat4| {
         for instance in &mut scene.instances {
             instance.world_from_object *= matrix;
@@ -67,9 +66,9 @@ fn maps_look_as_in_the_oracle_on_mirrored_sheared_faceted_and_moved_surfaces_and
         ("moved", &["wobble", "studio"], &|_| {}),
     ];
     let option = pinned(quick_option(&renderer));
-    for (what, effects, change) in cases {
+    for (what, effects, change) in reach.of(2, cases) {
         let (scene, view) = balls(change);
-        exact(&mut renderer, &scene, &view, &stack(effects), &option, what);
+        renderer.exact(&scene, &view, &stack(effects), &option, what);
     }
 }
 
@@ -115,13 +114,11 @@ fn a_flat_map_of_normals_changes_nothing_and_an_even_map_is_a_factor() {
 
 #[test]
 fn maps_are_in_the_kernel_only_where_an_effect_reads_them() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let (scene, view) = balls(|_| {});
     let option = pinned(quick_option(&renderer));
     let mut maps = |effects: &[&str]| {
-        judged(&mut renderer, &scene, &view, &stack(effects), &option);
+        renderer.judged(&scene, &view, &stack(effects), &option);
         let surface = &renderer.key().expect("something was drawn").surface;
         (
             surface.has_material_atlas,
@@ -134,9 +131,8 @@ fn maps_are_in_the_kernel_only_where_an_effect_reads_them() {
     assert_eq!(maps(&["studio"]), (true, true, true));
 }
 
-#[test]
-fn mistakes_in_maps_are_caught() {
-    let Some(healthy) = renderer() else {
+fn mistakes_in_maps_are_caught(reach: Reach) {
+    let Some(healthy) = loan() else {
         return;
     };
     let (scene, view) = balls(|_| {});
@@ -151,10 +147,15 @@ fn mistakes_in_maps_are_caught() {
             "select(-tangent.w, tangent.w, is_mirrored)",
         ),
     ];
-    for (from, to) in mistakes {
+    for (from, to) in reach.of(1, mistakes) {
         let library = mutated(from, to);
         let mut wrong = Renderer::with_library(healthy.gpu().clone(), library.shaders());
-        let (_, verdict) = judged(&mut wrong, &scene, &view, &stack, &option);
+        let (_, verdict) = wrong.judged(&scene, &view, &stack, &option);
         assert!(exactness(&verdict.report).is_err(), "{to}");
     }
 }
+
+few_and_all!(
+    maps_look_as_in_the_oracle_on_mirrored_sheared_faceted_and_moved_surfaces_and_from_behind,
+    mistakes_in_maps_are_caught,
+);

@@ -58,11 +58,8 @@ fn panels(size: [u32; 2]) -> (Arc<Scene>, View) {
 
 // -------- pictures
 
-#[test]
-fn images_look_as_in_the_oracle_from_every_side() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+fn images_look_as_in_the_oracle_from_every_side(reach: Reach) {
+    let Some(mut renderer) = loan() else { return };
     let (panels, front) = panels([200, 150]);
     // Over the ground, which is cut behind the eye and runs to the horizon.
     let low = from_eye(&panels, [0.3, -1.9, 1.5], [0.0, -2.2, -6.0], [200, 150]);
@@ -74,7 +71,7 @@ fn images_look_as_in_the_oracle_from_every_side() {
     let parallel = seen_by(&panels, flat, [160, 120]);
     let globe = scene("globe?tess=6");
     let near = from_eye(&globe, [0.4, 0.5, 1.5], [0.0, 0.0, 0.0], [160, 120]);
-    let (mut cut, options) = (0, options(&renderer));
+    let (mut cut, options) = (0, reach.options(&renderer));
     for (turn, (what, scene, view)) in [
         ("in front", &panels, &front),
         ("over the ground", &panels, &low),
@@ -85,8 +82,7 @@ fn images_look_as_in_the_oracle_from_every_side() {
     .enumerate()
     {
         let names = [&["facet", "lambert", "fog"][..], &["explode", "lambert"]][turn / 2];
-        let (capture, _) = exact(
-            &mut renderer,
+        let (capture, _) = renderer.exact(
             scene,
             view,
             &stack(names),
@@ -100,9 +96,7 @@ fn images_look_as_in_the_oracle_from_every_side() {
 
 #[test]
 fn models_of_every_format_of_meshes_look_as_in_the_oracle() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let mut png = std::io::Cursor::new(Vec::new());
     image::RgbaImage::from_fn(5, 3, |x, y| {
         image::Rgba([50 * x as u8, 80 * y as u8, 99, 255])
@@ -129,14 +123,8 @@ fn models_of_every_format_of_meshes_look_as_in_the_oracle() {
         let scene = Arc::new(scene.expect("a model"));
         let view = from_eye(&scene, [1.4, 1.2, 2.5], [0.5, 0.5, 0.0], [120, 90]);
         let option = quick_option(&renderer);
-        let (capture, _) = exact(
-            &mut renderer,
-            &scene,
-            &view,
-            &stack(&["lambert"]),
-            &pinned(option),
-            what,
-        );
+        let (capture, _) =
+            renderer.exact(&scene, &view, &stack(&["lambert"]), &pinned(option), what);
         let background = capture.frame.color[0];
         let is_drawn = capture
             .frame
@@ -191,19 +179,14 @@ fn pictures(scene: &Arc<Scene>, view: &View) -> Vec<(&'static str, Picture)> {
             .expect("it fits")
             .color,
     )];
-    if let Some(mut renderer) = renderer() {
+    if let Some(mut renderer) = loan() {
         let option = quick_option(&renderer);
         pictures.push((
             "adapter",
-            captured(
-                &mut renderer,
-                scene,
-                view,
-                &Stack::default(),
-                &pinned(option),
-            )
-            .frame
-            .color,
+            renderer
+                .captured(scene, view, &Stack::default(), &pinned(option))
+                .frame
+                .color,
         ));
     }
     pictures
@@ -323,21 +306,11 @@ fn what_shines_is_seen_in_the_dark_and_what_is_unlit_in_any_light() {
     assert!(seen.iter().all(|count| *count > 50), "{seen:?}");
 }
 
-#[test]
-fn mistakes_in_looking_up_texels_are_caught() {
-    let Some(mut healthy) = renderer() else {
-        return;
-    };
+fn mistakes_in_looking_up_texels_are_caught(reach: Reach) {
+    let Some(mut healthy) = loan() else { return };
     let (scene, view) = panels([200, 150]);
-    let (stack, option) = (stack(&["lambert"]), pinned(Visibility::Split32));
-    exact(
-        &mut healthy,
-        &scene,
-        &view,
-        &stack,
-        &option,
-        "without a mistake",
-    );
+    let (stack, option) = (stack(&["lambert"]), split32());
+    healthy.exact(&scene, &view, &stack, &option, "without a mistake");
     let mistakes = [
         (
             "a hundredth of a texel aside",
@@ -351,10 +324,10 @@ fn mistakes_in_looking_up_texels_are_caught() {
         ),
     ];
     let mut missed = Vec::new();
-    for (what, from, to) in mistakes {
+    for (what, from, to) in reach.of(1, mistakes) {
         let library = mutated(from, to);
         let mut wrong = Renderer::with_library(healthy.gpu().clone(), library.shaders());
-        let (_, verdict) = judged(&mut wrong, &scene, &view, &stack, &option);
+        let (_, verdict) = wrong.judged(&scene, &view, &stack, &option);
         match exactness(&verdict.report) {
             Ok(()) => missed.push(what),
             Err(why) => eprintln!("{what}: {why}"),
@@ -379,11 +352,8 @@ fn crowns(size: [u32; 2]) -> (Arc<Scene>, [(&'static str, View); 2]) {
     (scene, [("outside", outside), ("inside", inside)])
 }
 
-#[test]
-fn masks_leave_out_the_same_samples_in_every_kernel_and_in_the_oracle() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+fn masks_leave_out_the_same_samples_in_every_kernel_and_in_the_oracle(reach: Reach) {
+    let Some(mut renderer) = loan() else { return };
     let (scene, views) = crowns([160, 120]);
     let stacks = [
         &["lambert"][..],
@@ -391,13 +361,12 @@ fn masks_leave_out_the_same_samples_in_every_kernel_and_in_the_oracle() {
         &["draw_order"],
         &["explode"],
     ];
-    let (options, mut cut) = (options(&renderer), 0);
+    let (options, mut cut) = (reach.options(&renderer), 0);
     for (what, view) in &views {
-        for (turn, names) in stacks.iter().enumerate() {
+        for (turn, names) in reach.of(2, stacks.iter().enumerate()) {
             renderer.set_tuning(tunings()[turn % 4]);
             let option = options[turn % options.len()];
-            let (capture, _) = exact(
-                &mut renderer,
+            let (capture, _) = renderer.exact(
                 &scene,
                 view,
                 &stack(names),
@@ -501,14 +470,8 @@ fn a_mask_of_a_texel_a_pixel_is_the_alpha_of_the_image() {
                     .expect("it fits")
                     .triangle_id;
                 let mut all = vec![("oracle", own)];
-                if let Some(mut renderer) = renderer() {
-                    let capture = captured(
-                        &mut renderer,
-                        &masked,
-                        &view,
-                        &Stack::default(),
-                        &pinned(Visibility::Split32),
-                    );
+                if let Some(mut renderer) = loan() {
+                    let capture = renderer.captured(&masked, &view, &Stack::default(), &split32());
                     assert_eq!(capture.frame.counters.depth_without_id, 0);
                     all.push(("adapter", capture.frame.triangle_id));
                 }
@@ -532,13 +495,10 @@ fn a_mask_of_a_texel_a_pixel_is_the_alpha_of_the_image() {
     }
 }
 
-#[test]
-fn mistakes_in_masks_are_caught() {
-    let Some(mut healthy) = renderer() else {
-        return;
-    };
+fn mistakes_in_masks_are_caught(reach: Reach) {
+    let Some(mut healthy) = loan() else { return };
     let (scene, views) = crowns([200, 150]);
-    let (stack, option) = (stack(&[]), pinned(Visibility::Split32));
+    let (stack, option) = (stack(&[]), split32());
     let mistakes = [
         (
             "without perspective",
@@ -552,8 +512,7 @@ fn mistakes_in_masks_are_caught() {
         ),
     ];
     for (what, view) in &views {
-        exact(
-            &mut healthy,
+        healthy.exact(
             &scene,
             view,
             &stack,
@@ -562,11 +521,11 @@ fn mistakes_in_masks_are_caught() {
         );
     }
     let mut missed = Vec::new();
-    for (what, from, to) in mistakes {
+    for (what, from, to) in reach.of(1, mistakes) {
         let library = mutated(from, to);
         let mut wrong = Renderer::with_library(healthy.gpu().clone(), library.shaders());
         let why = views.iter().find_map(|(_, view)| {
-            exactness(&judged(&mut wrong, &scene, view, &stack, &option).1.report).err()
+            exactness(&wrong.judged(&scene, view, &stack, &option).1.report).err()
         });
         match why {
             None => missed.push(what),
@@ -578,22 +537,13 @@ fn mistakes_in_masks_are_caught() {
 
 #[test]
 fn the_tier_strict_takes_masks_unless_something_masked_is_cut() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let (scene, [(_, outside), (_, inside)]) = crowns([96, 72]);
     let strict = AccuracyRequest {
         tier: Tier::Strict,
         ..AccuracyRequest::default()
     };
-    let (capture, _) = exact(
-        &mut renderer,
-        &scene,
-        &outside,
-        &stack(&["lambert"]),
-        &strict,
-        "strict",
-    );
+    let (capture, _) = renderer.exact(&scene, &outside, &stack(&["lambert"]), &strict, "strict");
     let (triangle_ids, keys) =
         oracle::strict_frame(&scene, &outside, &stack(&["lambert"])).expect("it fits");
     assert_eq!(
@@ -696,19 +646,11 @@ fn a_scene_of_plain_colors_has_no_texture_and_no_word_of_one() {
             ["material_atlas"]
         );
     }
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let mut buffers = |query: &str| {
         let scene = scene(query);
         let view = view(&scene, [64, 48]);
-        captured(
-            &mut renderer,
-            &scene,
-            &view,
-            &stack(&["lambert"]),
-            &pinned(Visibility::Split32),
-        );
+        renderer.captured(&scene, &view, &stack(&["lambert"]), &split32());
         let explained = renderer.explain();
         let said = explained
             .omitted
@@ -743,20 +685,11 @@ fn a_scene_of_plain_colors_has_no_texture_and_no_word_of_one() {
 
 #[test]
 fn another_scene_of_textures_brings_its_own() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let scenes = ["panels", "globe?tess=4", "panels?repeats=2"].map(scene);
     for scene in scenes.iter().chain(&scenes) {
         let view = view(scene, [96, 72]);
-        exact(
-            &mut renderer,
-            scene,
-            &view,
-            &stack(&["lambert"]),
-            &pinned(Visibility::Split32),
-            &scene.name,
-        );
+        renderer.exact(scene, &view, &stack(&["lambert"]), &split32(), &scene.name);
     }
 }
 
@@ -807,3 +740,10 @@ fn textured_boxes_of_the_corpus_show_their_image() {
         "three ways to store one box"
     );
 }
+
+few_and_all!(
+    masks_leave_out_the_same_samples_in_every_kernel_and_in_the_oracle,
+    images_look_as_in_the_oracle_from_every_side,
+    mistakes_in_masks_are_caught,
+    mistakes_in_looking_up_texels_are_caught,
+);

@@ -60,10 +60,7 @@ fn at(preset: &Preset, frame: u32) -> Preset {
 }
 
 fn on(curl: CurlNoise, state: ParticleStorage) -> AccuracyRequest {
-    AccuracyRequest {
-        pins: PinnedOptions::of(curl).with(state),
-        ..AccuracyRequest::default()
-    }
+    request(PinnedOptions::of(curl).with(state))
 }
 
 fn particle_options() -> impl Iterator<Item = (CurlNoise, ParticleStorage)> {
@@ -81,8 +78,7 @@ fn flown(
     accuracy: &AccuracyRequest,
 ) -> (Capture, ParticleReadback) {
     let preset = at(preset, frame);
-    let capture = captured(
-        renderer,
+    let capture = renderer.captured(
         scene,
         &preset.view(scene, SIZE),
         &preset.evaluated_stack(),
@@ -104,8 +100,7 @@ fn measured(
     accuracy: &AccuracyRequest,
 ) -> (Capture, Measured) {
     let preset = at(preset, frame);
-    let (capture, verdict) = judged(
-        renderer,
+    let (capture, verdict) = renderer.judged(
         scene,
         &preset.view(scene, SIZE),
         &preset.evaluated_stack(),
@@ -298,11 +293,8 @@ fn a_disc_is_the_ellipse_that_touches_the_sides_in_their_middles() {
 
 // -------- on an adapter
 
-#[test]
-fn every_step_is_within_its_bound_with_every_option() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+fn every_step_is_within_its_bound_with_every_option(reach: Reach) {
+    let Some(mut renderer) = loan() else { return };
     let scene = scene("chamber");
     let preset_files: [&[(&str, &[f64])]; 5] = [
         &[],
@@ -332,7 +324,7 @@ fn every_step_is_within_its_bound_with_every_option() {
             ("center", &[40.0, -3.0, 7.0]),
         ],
     ];
-    for (number, fields) in preset_files.iter().enumerate() {
+    for (number, fields) in reach.of(2, preset_files.iter().enumerate()) {
         // Of four options each look meets two.
         for (curl, state) in particle_options().skip(number % 2).step_by(2) {
             for frame in [0, 1, 13, 40] {
@@ -361,11 +353,10 @@ fn every_step_is_within_its_bound_with_every_option() {
     }
 }
 
-#[test]
-fn a_frame_is_the_same_however_it_was_reached() {
+fn a_frame_is_the_same_however_it_was_reached(reach: Reach) {
     let Some(gpu) = gpu() else { return };
     let scene = scene("chamber");
-    for (curl, state) in particle_options() {
+    for (curl, state) in reach.of(1, particle_options()) {
         let accuracy = on(curl, state);
         let preset = preset_file(&[("lifetime_s", &[0.4]), ("count", &[333.0])]);
         let fresh = |gpu: &Arc<Gpu>| Renderer::new(gpu.clone());
@@ -427,16 +418,13 @@ fn a_frame_is_the_same_however_it_was_reached() {
 
 #[test]
 fn none_few_and_odd_numbers_of_particles_are_drawn() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let scene = scene("chamber");
-    let bare = captured(
-        &mut renderer,
+    let bare = renderer.captured(
         &scene,
         &Preset::default().view(&scene, SIZE),
         &stack(&[]),
-        &AccuracyRequest::default(),
+        &unpinned(),
     );
     for count in [0u32, 1, 2, 63, 65, 257] {
         let preset = at(
@@ -444,13 +432,8 @@ fn none_few_and_odd_numbers_of_particles_are_drawn() {
             20,
         );
         let view = preset.view(&scene, SIZE);
-        let (capture, verdict) = judged(
-            &mut renderer,
-            &scene,
-            &view,
-            &preset.evaluated_stack(),
-            &AccuracyRequest::default(),
-        );
+        let (capture, verdict) =
+            renderer.judged(&scene, &view, &preset.evaluated_stack(), &unpinned());
         exactness(&verdict.report).unwrap_or_else(|why| panic!("{count}: {why}"));
         let particle_readback = capture
             .geometry
@@ -483,20 +466,11 @@ fn none_few_and_odd_numbers_of_particles_are_drawn() {
 }
 
 fn captured_of(renderer: &mut Renderer, scene: &Arc<Scene>, view: &View) -> Capture {
-    captured(
-        renderer,
-        scene,
-        view,
-        &stack(&[]),
-        &AccuracyRequest::default(),
-    )
+    renderer.captured(scene, view, &stack(&[]), &unpinned())
 }
 
-#[test]
-fn lives_end_and_begin_again_inside_the_room() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+fn lives_end_and_begin_again_inside_the_room(reach: Reach) {
+    let Some(mut renderer) = loan() else { return };
     let scene = scene("chamber");
     let preset = preset_file(&[
         ("lifetime_s", &[0.25]),
@@ -507,7 +481,7 @@ fn lives_end_and_begin_again_inside_the_room() {
     let p: Particles = preset.stack.params(&EFFECT.name).expect("particles");
     let [longest, _] = particles::life_steps(&p);
     assert_eq!(longest, 15);
-    for (curl, state) in particle_options() {
+    for (curl, state) in reach.of(1, particle_options()) {
         let particle_readback = flown(&mut renderer, &scene, &preset, 100, &on(curl, state)).1;
         let held = |flight: &ParticleState| flight.position.iter().all(|at| at.abs() <= 0.8 + 1e-5);
         assert!(particle_readback.after.iter().all(|flight| held(flight)
@@ -535,11 +509,8 @@ fn lives_end_and_begin_again_inside_the_room() {
     }
 }
 
-#[test]
-fn for_a_second_particles_follow_the_reference_and_rough_options_drift() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+fn for_a_second_particles_follow_the_reference_and_rough_options_drift(reach: Reach) {
+    let Some(mut renderer) = loan() else { return };
     let scene = scene("chamber");
     let preset = preset_file(&[
         ("lifetime_s", &[30.0]),
@@ -560,7 +531,7 @@ fn for_a_second_particles_follow_the_reference_and_rough_options_drift() {
         accuracy
     };
     let mut last = 0.0;
-    for frame in [0, 30, 60, 120, 240, 480] {
+    for frame in reach.of(4, [0, 30, 60, 120, 240, 480]) {
         let accuracy = drift(
             &mut renderer,
             frame,
@@ -595,21 +566,21 @@ fn for_a_second_particles_follow_the_reference_and_rough_options_drift() {
     }
 }
 
-#[test]
-fn discs_of_every_size_are_the_oracle_s_with_every_option_and_tuning() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+fn discs_of_every_size_are_the_oracle_s_with_every_option_and_tuning(reach: Reach) {
+    let Some(mut renderer) = loan() else { return };
     let scene = scene("chamber");
     // Less than a pixel, ordinary, larger than a tile, and as large as the picture with the eye
     // among them.
-    for (size, effects) in [
-        (0.004, &[][..]),
-        (0.03, &["xray"]),
-        (0.5, &["dissolve"]),
-        (3.0, &["overdraw"]),
-        (9.0, &[]),
-    ] {
+    for (size, effects) in reach.of(
+        2,
+        [
+            (0.004, &[][..]),
+            (0.03, &["xray"]),
+            (0.5, &["dissolve"]),
+            (3.0, &["overdraw"]),
+            (9.0, &[]),
+        ],
+    ) {
         let mut preset = at(
             &preset_file(&[
                 ("radius_m", &[size]),
@@ -630,13 +601,13 @@ fn discs_of_every_size_are_the_oracle_s_with_every_option_and_tuning() {
         }
         let (view, stack) = (preset.view(&scene, SIZE), preset.evaluated_stack());
         let mut first: Option<Capture> = None;
-        for (tuning, option) in tunings()
+        let ways = tunings()
             .into_iter()
-            .zip(options(&renderer).into_iter().cycle())
-        {
+            .zip(options(&renderer).into_iter().cycle());
+        for (tuning, option) in reach.of(2, ways) {
             renderer.set_tuning(tuning);
             let what = format!("size {size}, {} {tuning:?}", option.name());
-            let (capture, _) = exact(&mut renderer, &scene, &view, &stack, &pinned(option), &what);
+            let (capture, _) = renderer.exact(&scene, &view, &stack, &pinned(option), &what);
             let first = first.get_or_insert_with(|| capture.clone());
             assert!(
                 capture.frame.triangle_id == first.frame.triangle_id
@@ -651,19 +622,16 @@ fn discs_of_every_size_are_the_oracle_s_with_every_option_and_tuning() {
 
 #[test]
 fn what_fills_boxes_or_draws_corners_shows_no_discs() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let scene = scene("chamber");
     for name in ["boxes", "points"] {
         let mut preset = at(&preset_file(&[("count", &[60.0])]), 10);
         preset.stack.enable(Effect::find(name).expect("an effect"));
-        exact(
-            &mut renderer,
+        renderer.exact(
             &scene,
             &preset.view(&scene, SIZE),
             &preset.evaluated_stack(),
-            &AccuracyRequest::default(),
+            &unpinned(),
             name,
         );
     }
@@ -671,9 +639,7 @@ fn what_fills_boxes_or_draws_corners_shows_no_discs() {
 
 #[test]
 fn keys_lead_the_attractor_and_a_frame_of_them_is_the_same_however_it_was_reached() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let scene = scene("chamber");
     let mut preset = preset_file(&[
         ("attraction", &[9.0]),
@@ -716,9 +682,7 @@ fn keys_lead_the_attractor_and_a_frame_of_them_is_the_same_however_it_was_reache
 
 #[test]
 fn too_many_particles_are_refused_with_a_sentence() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let scene = scene("chamber");
     let most = renderer.gpu().caps.max_storage_binding_bytes;
     let preset = preset_file(&[("count", &[4e6])]);
@@ -730,7 +694,7 @@ fn too_many_particles_are_refused_with_a_sentence() {
         .draw_complete(
             &preset.view(&scene, [8, 8]),
             &preset.evaluated_stack(),
-            &AccuracyRequest::default(),
+            &unpinned(),
         )
         .block_on();
     if most < 4_000_000 * 72 {
@@ -739,18 +703,16 @@ fn too_many_particles_are_refused_with_a_sentence() {
     }
     // What was there before is still drawn.
     let few = at(&preset_file(&[]), 3);
-    exact(
-        &mut renderer,
+    renderer.exact(
         &scene,
         &few.view(&scene, SIZE),
         &few.evaluated_stack(),
-        &AccuracyRequest::default(),
+        &unpinned(),
         "after a refusal",
     );
 }
 
-#[test]
-fn a_mistake_in_the_pass_is_found() {
+fn a_mistake_in_the_pass_is_found(reach: Reach) {
     let Some(gpu) = gpu() else { return };
     let scene = scene("chamber");
     let preset = preset_file(&[
@@ -758,15 +720,18 @@ fn a_mistake_in_the_pass_is_found() {
         ("attraction", &[2.0]),
         ("radius_m", &[0.1]),
     ]);
-    for (right, wrong) in [
-        ("(t - 1.0) * (t - 1.0)", "(t - 1.0) * t"),
-        (
-            "(frame_number & 1u) * particle_step.count + id);\n    particle_states",
-            "id);\n    particle_states",
-        ),
-        ("vec2f(0.0, 2.0)", "vec2f(0.0, 1.99)"),
-        ("2u * areas.x", "areas.x"),
-    ] {
+    for (right, wrong) in reach.of(
+        2,
+        [
+            ("(t - 1.0) * (t - 1.0)", "(t - 1.0) * t"),
+            (
+                "(frame_number & 1u) * particle_step.count + id);\n    particle_states",
+                "id);\n    particle_states",
+            ),
+            ("vec2f(0.0, 2.0)", "vec2f(0.0, 1.99)"),
+            ("2u * areas.x", "areas.x"),
+        ],
+    ) {
         let mutant = mutated(right, wrong);
         let mut renderer = Renderer::with_library(gpu.clone(), mutant.shaders());
         let is_found = [0, 1, 18].into_iter().any(|frame| {
@@ -776,10 +741,7 @@ fn a_mistake_in_the_pass_is_found() {
                 .block_on()
                 .expect("a builtin fits");
             let (view, stack) = (preset.view(&scene, SIZE), preset.evaluated_stack());
-            let Ok(capture) = renderer
-                .capture(&view, &stack, &AccuracyRequest::default())
-                .block_on()
-            else {
+            let Ok(capture) = renderer.capture(&view, &stack, &unpinned()).block_on() else {
                 return true;
             };
             let verdict = oracle::judge(
@@ -800,3 +762,12 @@ fn a_mistake_in_the_pass_is_found() {
         assert!(is_found, "{wrong:?} for {right:?} goes unnoticed");
     }
 }
+
+few_and_all!(
+    every_step_is_within_its_bound_with_every_option,
+    a_frame_is_the_same_however_it_was_reached,
+    lives_end_and_begin_again_inside_the_room,
+    for_a_second_particles_follow_the_reference_and_rough_options_drift,
+    discs_of_every_size_are_the_oracle_s_with_every_option_and_tuning,
+    a_mistake_in_the_pass_is_found,
+);

@@ -10,7 +10,7 @@ use rasterlab::{
     measure::Budget,
 };
 
-use super::common;
+use super::common::{self, Draws as _, Reach, few_and_all};
 
 /// Most lines of an effect.
 const MOST_LINES: usize = 60;
@@ -32,9 +32,8 @@ fn files() -> Vec<PathBuf> {
     files
 }
 
-#[test]
-fn every_ported_effect_is_drawn_as_the_oracle_draws_it() {
-    let Some(mut renderer) = common::renderer() else {
+fn every_ported_effect_is_drawn_as_the_oracle_draws_it(reach: Reach) {
+    let Some(mut renderer) = common::loan() else {
         return;
     };
     let files = files();
@@ -51,9 +50,14 @@ fn every_ported_effect_is_drawn_as_the_oracle_draws_it() {
     let lambert = Effect::find("lambert").expect("it is built in");
     let mut plain = Stack::default();
     plain.enable(lambert);
-    let before = common::captured(&mut renderer, &scene, &view, &plain, &accuracy);
+    let before = renderer.captured(&scene, &view, &plain, &accuracy);
     let mut faults = Vec::new();
-    for path in files {
+    for path in reach.of(
+        3,
+        files
+            .into_iter()
+            .step_by(if reach == Reach::Few { 7 } else { 1 }),
+    ) {
         let text = std::fs::read_to_string(&path).expect("it is text");
         let name = stem(&path);
         assert!(text.lines().count() <= MOST_LINES, "{name} is long");
@@ -61,7 +65,7 @@ fn every_ported_effect_is_drawn_as_the_oracle_draws_it() {
         let effect = read.unwrap_or_else(|error| panic!("{error}"));
         let mut stack = plain.clone();
         stack.enable(&effect);
-        let (capture, verdict) = common::judged(&mut renderer, &scene, &view, &stack, &accuracy);
+        let (capture, verdict) = renderer.judged(&scene, &view, &stack, &accuracy);
         if let Err(fault) = verdict.report.within(&budget) {
             faults.push(format!("{name}: {fault}"));
         }
@@ -117,3 +121,5 @@ fn faulty_effects_are_refused_with_what_to_do() {
         assert!(error.place.is_some(), "{error}");
     }
 }
+
+few_and_all!(every_ported_effect_is_drawn_as_the_oracle_draws_it,);

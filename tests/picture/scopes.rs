@@ -87,28 +87,18 @@ fn drawn(
     stack: &Stack,
     accuracy: &AccuracyRequest,
 ) -> Capture {
-    exact(
-        renderer,
-        scene,
-        view,
-        stack,
-        accuracy,
-        &format!("{stack:?}"),
-    )
-    .0
+    renderer
+        .exact(scene, view, stack, accuracy, &format!("{stack:?}"))
+        .0
 }
 
-#[test]
-fn a_surface_effect_colors_its_parts_as_if_it_were_everywhere_and_leaves_all_others_as_they_were() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+fn a_surface_effect_colors_its_parts_as_if_it_were_everywhere_and_leaves_all_others_as_they_were(
+    reach: Reach,
+) {
+    let Some(mut renderer) = loan() else { return };
     let picture = wall();
-    for visibility in options(&renderer) {
-        let accuracy = AccuracyRequest {
-            pins: PinnedOptions::of(visibility),
-            ..AccuracyRequest::default()
-        };
+    for visibility in reach.options(&renderer) {
+        let accuracy = request(PinnedOptions::of(visibility));
         let mut draw = |stack: &Stack| drawn(&mut renderer, &picture, stack, &accuracy);
         let (none, all) = (
             draw(&only("lambert", &[], &[])),
@@ -145,22 +135,16 @@ fn a_surface_effect_colors_its_parts_as_if_it_were_everywhere_and_leaves_all_oth
     }
 }
 
-#[test]
-fn a_sample_effect_leaves_out_samples_of_its_parts_alone() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+fn a_sample_effect_leaves_out_samples_of_its_parts_alone(reach: Reach) {
+    let Some(mut renderer) = loan() else { return };
     let picture = wall();
     for (name, fields) in [
         ("stipple", &[("opacity", 0.3)][..]),
         ("dissolve", &[("fill", 0.4)]),
         ("wireframe", &[("hidden", 0.0)]),
     ] {
-        for visibility in options(&renderer) {
-            let accuracy = AccuracyRequest {
-                pins: PinnedOptions::of(visibility),
-                ..AccuracyRequest::default()
-            };
+        for visibility in reach.options(&renderer) {
+            let accuracy = request(PinnedOptions::of(visibility));
             let mut draw = |stack: &Stack| drawn(&mut renderer, &picture, stack, &accuracy);
             let (none, all, some) = (
                 draw(&only("lambert", &[], &[])),
@@ -193,19 +177,18 @@ fn a_sample_effect_leaves_out_samples_of_its_parts_alone() {
     }
 }
 
-#[test]
-fn a_vertex_effect_moves_its_parts_and_their_shadows_alone() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+fn a_vertex_effect_moves_its_parts_and_their_shadows_alone(reach: Reach) {
+    let Some(mut renderer) = loan() else { return };
     let picture = wall();
-    for (name, fields) in [
-        ("inflate", &[("amount_m", 0.1)][..]),
-        ("wobble", &[]),
-        ("explode", &[("amount_m", 0.6)]),
-    ] {
-        let mut draw =
-            |stack: &Stack| drawn(&mut renderer, &picture, stack, &AccuracyRequest::default());
+    for (name, fields) in reach.of(
+        1,
+        [
+            ("inflate", &[("amount_m", 0.1)][..]),
+            ("wobble", &[]),
+            ("explode", &[("amount_m", 0.6)]),
+        ],
+    ) {
+        let mut draw = |stack: &Stack| drawn(&mut renderer, &picture, stack, &unpinned());
         let with_shadow = |patterns: &[&str]| {
             let mut stack = only(name, patterns, fields);
             enable(&mut stack, effect("shadow"), &[], &[]);
@@ -247,9 +230,7 @@ fn a_vertex_effect_moves_its_parts_and_their_shadows_alone() {
 
 #[test]
 fn instances_of_one_effect_act_on_parts_of_their_own() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let picture = wall();
     let [skin, coat] =
         ["skin", "coat"].map(|name| Arc::new(Effect::instance(name, effect("toon"))));
@@ -264,17 +245,9 @@ fn instances_of_one_effect_act_on_parts_of_their_own() {
     let mut swapped = stack.clone();
     let [a, b] = [2, 3].map(|index| stack.0[index].on.clone());
     (swapped.0[2].on, swapped.0[3].on) = (b, a);
-    let baked = AccuracyRequest {
-        pins: PinnedOptions::of(Parameters::Baked),
-        ..AccuracyRequest::default()
-    };
-    let first = drawn(&mut renderer, &picture, &stack, &AccuracyRequest::default());
-    let second = drawn(
-        &mut renderer,
-        &picture,
-        &swapped,
-        &AccuracyRequest::default(),
-    );
+    let baked = request(PinnedOptions::of(Parameters::Baked));
+    let first = drawn(&mut renderer, &picture, &stack, &unpinned());
+    let second = drawn(&mut renderer, &picture, &swapped, &unpinned());
     // The scopes of the stack change while the view and the kernel stay.
     assert_ne!(first.frame.color, second.frame.color);
     assert_eq!(
@@ -285,9 +258,7 @@ fn instances_of_one_effect_act_on_parts_of_their_own() {
 
 #[test]
 fn layers_are_shaded_with_the_scope_of_their_own_draw() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let picture = wall();
     let stack = |patterns: &[&str]| {
         let mut stack = only("toon", patterns, &[]);
@@ -295,24 +266,16 @@ fn layers_are_shaded_with_the_scope_of_their_own_draw() {
         stack
     };
     let mut draw = |patterns: &[&str]| {
-        drawn(
-            &mut renderer,
-            &picture,
-            &stack(patterns),
-            &AccuracyRequest::default(),
-        )
-        .frame
-        .color
+        drawn(&mut renderer, &picture, &stack(patterns), &unpinned())
+            .frame
+            .color
     };
     let [some, all, none] = [&OTHERS[..], &[], &["mesh:nothing"]].map(&mut draw);
     assert!(some != all && some != none && all != none);
 }
 
-#[test]
-fn skinned_animals_in_a_room_are_told_apart() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+fn skinned_animals_in_a_room_are_told_apart(reach: Reach) {
+    let Some(mut renderer) = loan() else { return };
     let scene = Arc::new((*scene("walker?tess=1&instances=3")).clone().in_room(1.2));
     let preset = Preset {
         playback: ClipPlayback {
@@ -341,27 +304,15 @@ fn skinned_animals_in_a_room_are_told_apart() {
         &[("fill", 0.6)],
     );
     enable(&mut stack, effect("shadow"), &[], &[]);
-    for visibility in options(&renderer) {
-        let accuracy = AccuracyRequest {
-            pins: PinnedOptions::of(visibility),
-            ..AccuracyRequest::default()
-        };
-        exact(
-            &mut renderer,
-            &scene,
-            &view,
-            &stack,
-            &accuracy,
-            visibility.name(),
-        );
+    for visibility in reach.options(&renderer) {
+        let accuracy = request(PinnedOptions::of(visibility));
+        renderer.exact(&scene, &view, &stack, &accuracy, visibility.name());
     }
 }
 
 #[test]
 fn clipped_triangles_and_a_single_draw_know_their_scopes() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     // Rings and walls across the near plane and the guard band; one draw, whose record is a
     // uniform.
     for query in ["near", "sphere?triangles=200", "panels"] {
@@ -376,12 +327,11 @@ fn clipped_triangles_and_a_single_draw_know_their_scopes() {
             let mut stack = only("stipple", &patterns, &[("opacity", 0.5)]);
             enable(&mut stack, effect("wobble"), &patterns, &[]);
             enable(&mut stack, effect("fog"), &patterns, &[]);
-            exact(
-                &mut renderer,
+            renderer.exact(
                 &scene,
                 &view,
                 &stack,
-                &AccuracyRequest::default(),
+                &unpinned(),
                 &format!("{query} on {patterns:?}"),
             );
         }
@@ -408,16 +358,17 @@ fn the_scope_of_another_draw_is_found() {
     for (from, to, stack) in mistakes {
         let shaders = mutated(from, to);
         let mut renderer = Renderer::with_library(gpu.clone(), shaders.shaders());
-        let (_, verdict) = judged(
-            &mut renderer,
-            &scene,
-            &view,
-            &stack,
-            &AccuracyRequest::default(),
-        );
+        let (_, verdict) = renderer.judged(&scene, &view, &stack, &unpinned());
         assert!(
             exactness(&verdict.report).is_err(),
             "{from} became {to}, and nothing was found"
         );
     }
 }
+
+few_and_all!(
+    a_surface_effect_colors_its_parts_as_if_it_were_everywhere_and_leaves_all_others_as_they_were,
+    a_sample_effect_leaves_out_samples_of_its_parts_alone,
+    a_vertex_effect_moves_its_parts_and_their_shadows_alone,
+    skinned_animals_in_a_room_are_told_apart,
+);

@@ -135,14 +135,11 @@ fn on_floor(view: &View, x: usize, y: usize) -> DVec3 {
     view.eye - ray * (view.eye.y / ray.y)
 }
 
-#[test]
-fn a_plate_throws_its_shadow_where_geometry_says_to_a_texel() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+fn a_plate_throws_its_shadow_where_geometry_says_to_a_texel(reach: Reach) {
+    let Some(mut renderer) = loan() else { return };
     const HALF: f64 = 0.6;
     let scene = scene_of_meshes(&[plate(2.0, 0.0), plate(HALF as f32, 1.0)]);
-    for (azimuth, elevation) in [(0.0, 90.0), (25.0, 60.0), (-130.0, 40.0)] {
+    for (azimuth, elevation) in reach.of(2, [(0.0, 90.0), (25.0, 60.0), (-130.0, 40.0)]) {
         let stack = light_alone(&[
             ("shadow", "azimuth_deg", azimuth),
             ("shadow", "elevation_deg", elevation),
@@ -153,12 +150,11 @@ fn a_plate_throws_its_shadow_where_geometry_says_to_a_texel() {
             let light = stack.light_view(&scene, &view).expect("there is a light");
             let texel_m =
                 2.0 / (light.clip_from_world.row(0).truncate().length() * f64::from(light.width));
-            let (capture, _) = exact(
-                &mut renderer,
+            let (capture, _) = renderer.exact(
                 &scene,
                 &view,
                 &stack,
-                &AccuracyRequest::default(),
+                &unpinned(),
                 &format!("{azimuth} {elevation} {map:?}"),
             );
             let mut counts = [0, 0];
@@ -190,9 +186,7 @@ fn a_plate_throws_its_shadow_where_geometry_says_to_a_texel() {
 
 #[test]
 fn what_nothing_covers_is_lit_and_what_is_covered_is_dark() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let above = [("shadow", "elevation_deg", 90.0)];
     let (alone, covered) = (
         scene_of_meshes(&[plate(1.0, 0.0)]),
@@ -215,14 +209,8 @@ fn what_nothing_covers_is_lit_and_what_is_covered_is_dark() {
                     on(&low(scene), map, taps),
                     format!("{map:?} {taps:?} {byte}"),
                 );
-                let (capture, _) = exact(
-                    &mut renderer,
-                    scene,
-                    &view,
-                    &light_alone(&above),
-                    &AccuracyRequest::default(),
-                    &what,
-                );
+                let (capture, _) =
+                    renderer.exact(scene, &view, &light_alone(&above), &unpinned(), &what);
                 let floor = capture
                     .frame
                     .triangle_id
@@ -247,9 +235,7 @@ fn acne(unshaded: &Capture, shaded: &Capture) -> usize {
 
 #[test]
 fn a_ball_casts_no_shadow_on_its_lit_side() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let scene = ball();
     let view = slanted(&scene, [160, 120]);
     for (azimuth, elevation) in [(40.0, 48.0), (-70.0, 10.0), (0.0, 90.0)] {
@@ -261,15 +247,8 @@ fn a_ball_casts_no_shadow_on_its_lit_side() {
         for &map in ShadowMapSize::ALL {
             for &taps in ShadowTaps::ALL {
                 let view = on(&view, map, taps);
-                let [unshaded, shaded] = [&bare, &light_alone(&towards)].map(|stack| {
-                    captured(
-                        &mut renderer,
-                        &scene,
-                        &view,
-                        stack,
-                        &AccuracyRequest::default(),
-                    )
-                });
+                let [unshaded, shaded] = [&bare, &light_alone(&towards)]
+                    .map(|stack| renderer.captured(&scene, &view, stack, &unpinned()));
                 assert_eq!(
                     acne(&unshaded, &shaded),
                     0,
@@ -280,23 +259,14 @@ fn a_ball_casts_no_shadow_on_its_lit_side() {
     }
     // The test can fail: surfaces behind their own depths are speckled.
     let drowned = light_alone(&[("shadow", "bias", -1.0)]);
-    let [unshaded, shaded] = [light_alone(&[("shadow", "strength", 0.0)]), drowned].map(|stack| {
-        captured(
-            &mut renderer,
-            &scene,
-            &view,
-            &stack,
-            &AccuracyRequest::default(),
-        )
-    });
+    let [unshaded, shaded] = [light_alone(&[("shadow", "strength", 0.0)]), drowned]
+        .map(|stack| renderer.captured(&scene, &view, &stack, &unpinned()));
     assert!(acne(&unshaded, &shaded) > 1000);
 }
 
 #[test]
 fn a_light_that_looks_as_the_eye_does_sees_all_that_the_eye_sees() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let scene = ball();
     let towards = [
         ("shadow", "azimuth_deg", 30.0),
@@ -313,15 +283,7 @@ fn a_light_that_looks_as_the_eye_does_sees_all_that_the_eye_sees() {
         light_alone(&[&towards[..], &[("shadow", "strength", 0.0)]].concat()),
         light_alone(&towards),
     ]
-    .map(|stack| {
-        captured(
-            &mut renderer,
-            &scene,
-            &view,
-            &stack,
-            &AccuracyRequest::default(),
-        )
-    });
+    .map(|stack| renderer.captured(&scene, &view, &stack, &unpinned()));
     assert_eq!(acne(&unshaded, &shaded), 0);
 }
 
@@ -379,17 +341,14 @@ fn cases() -> Vec<(Arc<Scene>, Stack)> {
 
 #[test]
 fn every_size_of_map_and_filter_is_what_the_oracle_draws() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let scene = boxed("knot?tess=6");
     let quick = quick_option(&renderer);
     let mut tuning = renderer.gpu().caps.tuning();
     for (turn, &map) in ShadowMapSize::ALL.iter().enumerate() {
         let taps = ShadowTaps::ALL[turn % 3];
         let view = on(&view(&scene, [96, 72]), map, taps);
-        let (capture, _) = exact(
-            &mut renderer,
+        let (capture, _) = renderer.exact(
             &scene,
             &view,
             &lit(&["shadow"], &[]),
@@ -405,13 +364,7 @@ fn every_size_of_map_and_filter_is_what_the_oracle_draws() {
         // The map is read from the buffer in which it was drawn, or from a texture, its copy.
         if std::mem::replace(&mut tuning.buffered_shadow_map, false) {
             renderer.set_tuning(tuning);
-            let copied = captured(
-                &mut renderer,
-                &scene,
-                &view,
-                &lit(&["shadow"], &[]),
-                &pinned(quick),
-            );
+            let copied = renderer.captured(&scene, &view, &lit(&["shadow"], &[]), &pinned(quick));
             assert_eq!(
                 renderer.key().map(|key| key.work.buffered_shadow_map),
                 Some(false)
@@ -430,9 +383,7 @@ fn every_size_of_map_and_filter_is_what_the_oracle_draws() {
 
 #[test]
 fn the_light_may_stand_anywhere() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let scene = boxed("teapot?tess=4");
     let quick = quick_option(&renderer);
     let coarse = |scene: &Scene| {
@@ -457,8 +408,7 @@ fn the_light_may_stand_anywhere() {
                 ("shadow", "elevation_deg", elevation),
             ],
         );
-        exact(
-            &mut renderer,
+        renderer.exact(
             &scene,
             &coarse(&scene),
             &stack,
@@ -471,13 +421,7 @@ fn the_light_may_stand_anywhere() {
             &["shadow"],
             &[("shadow", "bias", bias), ("shadow", "slope", slope)],
         );
-        let (_, verdict) = judged(
-            &mut renderer,
-            &scene,
-            &coarse(&scene),
-            &stack,
-            &pinned(quick),
-        );
+        let (_, verdict) = renderer.judged(&scene, &coarse(&scene), &stack, &pinned(quick));
         let a = &verdict.report;
         assert!(
             a.max_color_delta <= 1 && a.wrong_triangles + a.key_outside_bound == 0,
@@ -488,39 +432,24 @@ fn the_light_may_stand_anywhere() {
 
 /// The light's view drawn as a picture: triangle ids to the sample, keys within their bound, and
 /// the map has those keys.
-#[test]
-fn the_map_is_the_picture_that_the_light_sees() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
-    for (scene, stack) in cases()
+fn the_map_is_the_picture_that_the_light_sees(reach: Reach) {
+    let Some(mut renderer) = loan() else { return };
+    let cases = cases()
         .into_iter()
-        .filter(|(scene, _)| scene.triangle_count() > 0)
-    {
+        .filter(|(scene, _)| scene.triangle_count() > 0);
+    for (scene, stack) in reach.of(3, cases) {
         let view = on(
             &view(&scene, [64, 48]),
             ShadowMapSize::Side256,
             ShadowTaps::One,
         );
-        let capture = captured(
-            &mut renderer,
-            &scene,
-            &view,
-            &stack,
-            &AccuracyRequest::default(),
-        );
+        let capture = renderer.captured(&scene, &view, &stack, &unpinned());
         let map = capture.geometry.shadow_map.expect("there is a map");
         let (light, casting) = (
             stack.light_view(&scene, &view).expect("there is a light"),
             stack.shadow_casters(),
         );
-        let (seen, verdict) = judged(
-            &mut renderer,
-            &scene,
-            &light,
-            &casting,
-            &pinned(Visibility::Split32),
-        );
+        let (seen, verdict) = renderer.judged(&scene, &light, &casting, &split32());
         // A map has depths and no triangle ids, and layers a quantum apart are all in the band.
         verdict
             .report
@@ -659,20 +588,13 @@ fn a_preset_without_a_light_has_no_pass_buffer_or_text_of_it() {
     // Small triangles, whose kernels are the same in every map.
     let scene = scene("sphere?triangles=5000");
     let view = view(&scene, [64, 48]);
-    captured(
-        &mut renderer,
-        &scene,
-        &view,
-        &stack(&["shadow"]),
-        &AccuracyRequest::default(),
-    );
+    renderer.captured(&scene, &view, &stack(&["shadow"]), &unpinned());
     let known = renderer.compiled();
-    captured(
-        &mut renderer,
+    renderer.captured(
         &scene,
         &on(&view, ShadowMapSize::Side512, ShadowTaps::Nine),
         &stack(&["shadow"]),
-        &AccuracyRequest::default(),
+        &unpinned(),
     );
     assert_eq!(
         renderer.compiled(),
@@ -707,9 +629,7 @@ fn a_preset_pins_size_and_taps() {
 
 #[test]
 fn walls_catch_shadows_and_cast_none_and_stand_still() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let scene = boxed("teapot?tess=4");
     let walls = u64::from(
         scene.primitives[scene.instances.last().expect("a room").primitive].vertex_count(),
@@ -722,14 +642,7 @@ fn walls_catch_shadows_and_cast_none_and_stand_still() {
     );
     let mut turned = coarse;
     turned.scene_state.world_from_scene = rasterlab::math::rotation_y(0.7);
-    let (capture, _) = exact(
-        &mut renderer,
-        &scene,
-        &turned,
-        &from_below,
-        &AccuracyRequest::default(),
-        "from below",
-    );
+    let (capture, _) = renderer.exact(&scene, &turned, &from_below, &unpinned(), "from below");
     let map = capture.geometry.shadow_map.expect("there is a map");
     assert_eq!(
         map.geometry.vertices.len() as u64 + walls,
@@ -745,9 +658,8 @@ fn walls_catch_shadows_and_cast_none_and_stand_still() {
 
 // -------- mutants
 
-#[test]
-fn mistakes_in_the_light_are_found() {
-    let Some(usual) = renderer() else { return };
+fn mistakes_in_the_light_are_found(reach: Reach) {
+    let Some(usual) = loan() else { return };
     let gpu = usual.gpu().clone();
     drop(usual);
     let scene = boxed("knot?tess=6");
@@ -757,28 +669,31 @@ fn mistakes_in_the_light_are_found() {
         ("explode", "front", 0.5),
     ];
     let (plain, parted) = (lit(&["shadow"], &[]), lit(&["explode", "shadow"], &sweep));
-    for (from, to, stack) in [
-        (
-            "texel.y * side + texel.x",
-            "texel.x * side + texel.y",
-            &plain,
-        ),
-        (
-            "vec2i(first) + texel",
-            "vec2i(first) + texel + vec2i(1, 0)",
-            &plain,
-        ),
-        (
-            "atomicMax(&depth_keys[pixel], key)",
-            "atomicMin(&depth_keys[pixel], key)",
-            &plain,
-        ),
-        (
-            "picture_from_world * vec4f(center, 1.0)",
-            "picture_from_world * vec4f(center.zyx, 1.0)",
-            &parted,
-        ),
-    ] {
+    for (from, to, stack) in reach.of(
+        2,
+        [
+            (
+                "texel.y * side + texel.x",
+                "texel.x * side + texel.y",
+                &plain,
+            ),
+            (
+                "vec2i(first) + texel",
+                "vec2i(first) + texel + vec2i(1, 0)",
+                &plain,
+            ),
+            (
+                "atomicMax(&depth_keys[pixel], key)",
+                "atomicMin(&depth_keys[pixel], key)",
+                &plain,
+            ),
+            (
+                "picture_from_world * vec4f(center, 1.0)",
+                "picture_from_world * vec4f(center.zyx, 1.0)",
+                &parted,
+            ),
+        ],
+    ) {
         if from == "texel.y * side + texel.x" && !gpu.caps.tuning().buffered_shadow_map {
             continue;
         }
@@ -794,7 +709,7 @@ fn mistakes_in_the_light_are_found() {
         } else {
             Visibility::Split32
         };
-        let (_, verdict) = judged(&mut renderer, &scene, &view, stack, &pinned(option));
+        let (_, verdict) = renderer.judged(&scene, &view, stack, &pinned(option));
         assert!(
             exactness(&verdict.report).is_err(),
             "{from:?} as {to:?} passes: {:?}",
@@ -802,3 +717,9 @@ fn mistakes_in_the_light_are_found() {
         );
     }
 }
+
+few_and_all!(
+    the_map_is_the_picture_that_the_light_sees,
+    a_plate_throws_its_shadow_where_geometry_says_to_a_texel,
+    mistakes_in_the_light_are_found,
+);

@@ -11,7 +11,6 @@ use rasterlab::{
     math::rounded_columns,
     measure::Budget,
     oracle,
-    plan::AccuracyRequest,
     preset::{ClipPlayback, Clock, MissingInScene, PinnedOptions, Preset},
     scene::{
         Accessor, ComponentType, Scene,
@@ -45,10 +44,7 @@ fn moment(
             time_s,
             ..Clock::default()
         },
-        accuracy: AccuracyRequest {
-            pins: PinnedOptions::of(skinning),
-            ..AccuracyRequest::default()
-        },
+        accuracy: request(PinnedOptions::of(skinning)),
         ..Preset::default()
     }
     .view(scene, size)
@@ -410,7 +406,7 @@ fn insist(
     option: Visibility,
     what: &str,
 ) -> f64 {
-    let (_, verdict) = exact(renderer, scene, view, stack, &pinned(option), what);
+    let (_, verdict) = renderer.exact(scene, view, stack, &pinned(option), what);
     let a = &verdict.report;
     assert!(
         a.deformed_vertices > 0 && a.max_deform_px < 0.01 && a.max_deform_ulp < 100.0,
@@ -419,18 +415,18 @@ fn insist(
     a.max_deform_ulp
 }
 
-#[test]
-fn every_option_deforms_as_the_oracle_does() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+fn every_option_deforms_as_the_oracle_does(reach: Reach) {
+    let Some(mut renderer) = loan() else { return };
     let stack = stack(&["lambert", "depth"]);
     let mut largest: f64 = 0.0;
-    for query in [
-        "tentacle?tess=4",
-        "tentacle?tess=3&influences=8&joints=16",
-        "tentacle?tess=2&influences=1&instances=7",
-    ] {
+    for query in reach.of(
+        1,
+        [
+            "tentacle?tess=4",
+            "tentacle?tess=3&influences=8&joints=16",
+            "tentacle?tess=2&influences=1&instances=7",
+        ],
+    ) {
         let scene = scene(query);
         for (clips, time_s) in [
             (["", ""], 0.0),
@@ -441,7 +437,7 @@ fn every_option_deforms_as_the_oracle_does() {
         ] {
             for (skinning, option) in Skinning::ALL
                 .iter()
-                .zip(options(&renderer).into_iter().cycle())
+                .zip(reach.options(&renderer).into_iter().cycle())
             {
                 let view = moment(&scene, clips, time_s, *skinning, [160, 120]);
                 let what = format!("{query} {clips:?} {} {}", skinning.name(), option.name());
@@ -452,22 +448,22 @@ fn every_option_deforms_as_the_oracle_does() {
     eprintln!("largest error of a bent vertex: {largest} ulp");
 }
 
-#[test]
-fn effects_work_on_deformed_meshes() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+fn effects_work_on_deformed_meshes(reach: Reach) {
+    let Some(mut renderer) = loan() else { return };
     let scene = scene("tentacle?tess=4");
     for skinning in Skinning::ALL {
         let view = moment(&scene, ["Curl", "Breathe"], 1.3, *skinning, [160, 120]);
-        for effects in [
-            &["explode", "facet"][..],
-            &["wobble", "lambert"],
-            &["inflate", "normals"],
-            &["dissolve", "lambert"],
-            &["xray"],
-            &["points"],
-        ] {
+        for effects in reach.of(
+            1,
+            [
+                &["explode", "facet"][..],
+                &["wobble", "lambert"],
+                &["inflate", "normals"],
+                &["dissolve", "lambert"],
+                &["xray"],
+                &["points"],
+            ],
+        ) {
             let what = format!("{effects:?} {}", skinning.name());
             insist(
                 &mut renderer,
@@ -483,9 +479,7 @@ fn effects_work_on_deformed_meshes() {
 
 #[test]
 fn a_camera_among_the_joints_is_clipped_like_any() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let scene = scene("tentacle?tess=4&instances=9");
     let camera = rasterlab::scene::camera::Camera {
         eye: DVec3::new(0.1, 0.8, 0.1),
@@ -507,14 +501,8 @@ fn a_camera_among_the_joints_is_clipped_like_any() {
         ..Preset::default()
     };
     let view = preset.view(&scene, [160, 120]);
-    let (capture, verdict) = exact(
-        &mut renderer,
-        &scene,
-        &view,
-        &stack(&["lambert"]),
-        &pinned(Visibility::Split32),
-        "inside",
-    );
+    let (capture, verdict) =
+        renderer.exact(&scene, &view, &stack(&["lambert"]), &split32(), "inside");
     assert!(
         capture.frame.counters.clipped > 0 && verdict.report.deformed_vertices > 0,
         "{:?}",
@@ -524,9 +512,7 @@ fn a_camera_among_the_joints_is_clipped_like_any() {
 
 #[test]
 fn a_thousand_skinned_instances_are_exact() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let scene = scene("tentacle?tess=1&instances=1000");
     let view = moment(
         &scene,
@@ -566,9 +552,7 @@ fn careless() -> Arc<Scene> {
 
 #[test]
 fn weights_that_are_zero_or_do_not_sum_to_one_are_put_right_alike() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let scene = careless();
     for skinning in Skinning::ALL {
         let view = moment(&scene, ["Curl", ""], 1.2, *skinning, [160, 120]);
@@ -585,9 +569,7 @@ fn weights_that_are_zero_or_do_not_sum_to_one_are_put_right_alike() {
 
 #[test]
 fn quantized_positions_are_drawn_and_deformed_like_any() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     for normalized in [false, true] {
         let mut scene = (*scene("tentacle?tess=3")).clone();
         let primitive = scene.primitives[0].clone();
@@ -625,14 +607,7 @@ fn quantized_positions_are_drawn_and_deformed_like_any() {
         placed.primitives[0].longest_edge *= 1.1 / scale;
         let placed = Arc::new(placed);
         let view = crate::common::view(&placed, [160, 120]);
-        exact(
-            &mut renderer,
-            &placed,
-            &view,
-            &stack(&["lambert"]),
-            &pinned(Visibility::Split32),
-            "placed",
-        );
+        renderer.exact(&placed, &view, &stack(&["lambert"]), &split32(), "placed");
         if normalized {
             let scene = Arc::new(scene);
             let view = moment(
@@ -654,8 +629,7 @@ fn quantized_positions_are_drawn_and_deformed_like_any() {
     }
 }
 
-#[test]
-fn mistakes_in_the_pass_are_found() {
+fn mistakes_in_the_pass_are_found(reach: Reach) {
     let Some(gpu) = gpu() else { return };
     let stack = stack(&["lambert"]);
     let scene = careless();
@@ -681,7 +655,7 @@ fn mistakes_in_the_pass_are_found() {
             "select(weight, weight,",
         ),
     ];
-    for (what, from, to) in mutants {
+    for (what, from, to) in reach.of(2, mutants) {
         let mutant = mutated(from, to);
         let mut found = false;
         for (skinning, clips, time_s) in Skinning::ALL
@@ -697,13 +671,7 @@ fn mistakes_in_the_pass_are_found() {
             };
             let view = moment(&scene, clips, time_s, skinning, [120, 90]);
             let mut renderer = Renderer::with_library(gpu.clone(), mutant.shaders());
-            let (_, verdict) = judged(
-                &mut renderer,
-                &scene,
-                &view,
-                &stack,
-                &pinned(Visibility::Split32),
-            );
+            let (_, verdict) = renderer.judged(&scene, &view, &stack, &split32());
             let faults = verdict.report.within(&Budget::default());
             found |= faults
                 .is_err_and(|faults| faults.contains("deformed vertices lie outside their bound"));
@@ -711,3 +679,9 @@ fn mistakes_in_the_pass_are_found() {
         assert!(found, "{what} was not found");
     }
 }
+
+few_and_all!(
+    every_option_deforms_as_the_oracle_does,
+    effects_work_on_deformed_meshes,
+    mistakes_in_the_pass_are_found,
+);

@@ -210,9 +210,7 @@ fn every_preset_is_exact_and_looks_like_its_golden_second_half() {
 
 /// Judges and compares the presets of one half, so that two threads have something to do.
 fn exact_and_like_their_goldens(half: usize) {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let update = std::env::var("UPDATE_SNAPSHOTS").unwrap_or_default();
     let mut failures = Vec::new();
     let options = options(&renderer);
@@ -243,7 +241,7 @@ fn exact_and_like_their_goldens(half: usize) {
             pins: preset.accuracy.pins.with(option),
             ..preset.accuracy
         };
-        let (capture, verdict) = judged_preset(&mut renderer, &scene, preset, &as_asked);
+        let (capture, verdict) = renderer.judged_preset(&scene, preset, &as_asked);
         within_budget(&verdict.report, preset)
             .unwrap_or_else(|why| panic!("{id} {}: {why}", option.name()));
         if preset.test.is_none() {
@@ -265,7 +263,7 @@ fn exact_and_like_their_goldens(half: usize) {
 /// drawn twice.
 #[test]
 fn a_preset_that_pins_a_lossy_option_is_verified_within_its_budget_of_wrong_triangles() {
-    if renderer().is_none() {
+    if loan().is_none() {
         return;
     }
     let folder = tempfile::tempdir().expect("a temporary folder");

@@ -1,91 +1,40 @@
 //! The kernels on a device: [`Renderer`] draws pictures, [`Capture`] is one with everything that
-//! decided it. The modules are listed so that each uses only those above it.
+//! decided it. The folders are listed so that each uses only those above it, and so are the files in
+//! each.
 
 // One place opts out, with its reason: the option `trusted` of pipelines.rs.
 #![deny(unsafe_code)]
 
-mod glass;
-
-pub mod error;
-mod gpu_record;
-pub mod records;
-mod resource_id;
-
-mod compile_watch;
-mod pipeline_store;
-pub mod preparations;
+mod layout;
 
 pub mod device;
-pub mod device_memory;
 
-mod completion;
+mod resources;
 
-#[cfg(target_arch = "wasm32")]
-pub mod canvas;
+mod scene_data;
 
-pub mod buffers;
-mod textures;
-pub mod timer;
+mod passes;
 
-mod packing;
-
-mod attributes;
-mod layer_sums;
-mod queues;
-
-mod frame_layout;
-pub mod frame_stats;
-mod image_files;
-mod material_atlas;
-pub mod pipelines;
-
-mod deforms;
-mod meshlets;
-
-mod draw_records;
-mod draws;
-mod scene_resources;
-
-mod recording;
-
-mod dot_tree;
-mod dots;
-pub mod particles;
-mod view_resources;
-
-mod history;
-mod pass_purpose;
-mod shadow_pass;
-
-mod explain;
-mod hardware_deform;
-mod hardware_geometry;
-mod hardware_materials;
-mod hardware_pipeline;
-mod readback;
-
-mod hardware_ids;
 mod renderer;
-pub mod warm_up;
 
-mod capture;
-pub mod hardware;
-pub mod naive;
-mod still;
+mod baselines;
 
-pub mod frame_times;
-
-pub use buffers::BufferNote;
-pub use capture::Capture;
-pub use compile_watch::CompileWatch;
-pub use completion::idle;
-pub use device::Gpu;
-pub use error::RenderError;
-pub use explain::{Explanation, SizesNote};
-pub use gpu_record::{RecordLayout, RecordMember};
-pub use queues::Capacities;
-pub use renderer::{Renderer, Report};
-pub use resource_id::ResourceId;
+pub use baselines::{hardware, naive};
+#[cfg(target_arch = "wasm32")]
+pub use device::canvas;
+pub use device::{
+    Gpu, compile_watch::CompileWatch, completion::idle, device_memory, error::RenderError,
+    preparations, timer,
+};
+pub use layout::{RecordLayout, RecordMember, ResourceId, queues::Capacities, records};
+pub use passes::particles;
+pub use renderer::{
+    Capture, Explanation, Renderer, Report, SizesNote, frame_stats, frame_times, warm_up,
+};
+pub use resources::{
+    buffers::{self, BufferNote},
+    pipelines,
+};
 
 pub use rasterlab_kernels::plan::Note;
 

@@ -155,9 +155,6 @@ pub struct Checkpoint(Option<Arc<Work>>);
 
 impl Checkpoint {
     /// Goes on, unless the work was canceled.
-    ///
-    /// # Errors
-    /// The work was canceled.
     pub fn pass(&self) -> Result<(), Canceled> {
         if self.0.as_ref().is_some_and(|work| work.is_canceled()) {
             Err(Canceled)
@@ -175,9 +172,6 @@ impl Checkpoint {
     }
 
     /// Says that so many more bytes are done, and goes on, unless the work was canceled.
-    ///
-    /// # Errors
-    /// The work was canceled.
     pub fn advance(&self, bytes: u64) -> Result<(), Canceled> {
         if let Some(work) = &self.0 {
             work.done.fetch_add(bytes, Ordering::Relaxed);
@@ -192,9 +186,6 @@ pub fn checkpoint() -> Checkpoint {
 }
 
 /// Begins a stage of the work that this thread does.
-///
-/// # Errors
-/// The work was canceled.
 pub fn stage(name: &'static str) -> Result<(), Canceled> {
     let checkpoint = checkpoint();
     if let Some(work) = &checkpoint.0 {
@@ -208,9 +199,6 @@ const PART: u32 = 1 << 16;
 
 /// What `of_part` gives for every part of `count` elements, in their order. Parts are handled on
 /// all threads.
-///
-/// # Errors
-/// The work was canceled between two parts.
 pub fn map_parts<T: Send>(
     count: u32,
     of_part: impl Fn(Range<u32>) -> T + Sync,
@@ -233,9 +221,6 @@ pub fn map_parts<T: Send>(
 const MOST_ITEMS: usize = 128;
 
 /// What `each` gives for every item, in their order, on all threads.
-///
-/// # Errors
-/// The work was canceled.
 pub fn map_each<I: Send, T: Send>(
     items: impl IndexedParallelIterator<Item = I>,
     each: impl Fn(I) -> T + Sync,

@@ -43,9 +43,7 @@ pub enum Purpose {
 }
 
 /// Refuses a picture that takes more memory or work than the oracle may.
-///
-/// # Errors
-/// [`DrawError::OracleMemory`] or [`DrawError::OracleWork`].
+/// Errors: [`DrawError::OracleMemory`] or [`DrawError::OracleWork`].
 pub fn check(shot: &Shot, purpose: Purpose) -> Result<(), DrawError> {
     let needed_gib =
         bytes(shot) as f64 * if purpose == Purpose::Judge { 2.0 } else { 1.0 } / f64::from(1 << 30);

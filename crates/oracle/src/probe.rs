@@ -86,10 +86,6 @@ impl From<LeftOut<'_>> for Outcome {
 /// Looks into the samples of `pixels` (column and row in the drawn picture) of a picture that an
 /// adapter or the oracle drew with this geometry, as a judge does; pixels outside the picture have
 /// no triangles.
-///
-/// # Errors
-/// [`DrawError`] if a transform or the number of triangles is out of range, or the work was
-/// canceled.
 pub fn probe(
     scene: &Scene,
     view: &View,

@@ -13,12 +13,7 @@ pub fn code_ui(ui: &mut Ui, preset_file: &PresetFile) {
     } else {
         format!("{count} effects")
     };
-    ui.label(
-        RichText::new(format!("{} brings code", preset_file.title()))
-            .size(15.0)
-            .color(theme::text_strong())
-            .strong(),
-    );
+    ui.label(theme::title(format!("{} brings code", preset_file.title())));
     ui.label(theme::weak(format!(
         "This preset contains {what} in WGSL, which would run on this computer's graphics device and processor. Loops are bounded, and files \
          cannot be read. Until you decide, nothing of it runs."
@@ -32,22 +27,17 @@ pub fn code_ui(ui: &mut Ui, preset_file: &PresetFile) {
                     continue;
                 };
                 let (lines, bytes) = (source.written.lines().count(), source.written.len());
-                let lines = if lines == 1 {
-                    "1 line".to_owned()
-                } else {
-                    format!("{lines} lines")
-                };
+                let s = if lines == 1 { "" } else { "s" };
                 let title = format!(
-                    "{}: {lines}, {bytes} bytes, {}",
+                    "{}: {lines} line{s}, {bytes} bytes, {}",
                     source.stem,
                     effect.hooks.names()
                 );
-                ui.collapsing(RichText::new(title).color(theme::text_strong()), |ui| {
+                ui.collapsing(theme::strong(title), |ui| {
                     ui.add(egui::Label::new(RichText::new(&source.written).monospace()).wrap());
                 })
                 .header_response
                 .on_hover_text("Show its text");
             }
         });
-    ui.add_space(theme::HALF);
 }

@@ -3,7 +3,7 @@
 
 use std::{path::Path, sync::Arc};
 
-use eframe::egui::{self, ComboBox, DragValue, Grid, Key, RichText, Ui};
+use eframe::egui::{self, Button, Key, Label, Ui, vec2};
 
 use crate::{
     accuracy::RenderScale,
@@ -15,7 +15,13 @@ use crate::{
             log::Level,
             state::State,
         },
-        widgets::{panel::Panel, size::size_ui, text::cut_middle, theme},
+        widgets::{
+            form::{field_ui, form_ui, menu_ui, number_ui, text_ui, words_ui},
+            panel::{Panel, at_right, centered, main_button},
+            size::size_ui,
+            text::cut_middle,
+            theme,
+        },
     },
     film::{Turntable, find_ffmpeg},
     preset::{Clock, Preset},
@@ -27,17 +33,35 @@ const MAX_SIDE: u32 = FilmSettings::MAX_SIDE;
 const WIDTH: f32 = 460.0;
 
 /// What anti-aliasing may be chosen; none: as the preset has it.
-const ANTI_ALIASING: [(Option<RenderScale>, &str); 4] = [
-    (None, "As the preset"),
-    (Some(RenderScale::Full), "Off"),
-    (Some(RenderScale::Double), "2×2"),
-    (Some(RenderScale::Quadruple), "4×4"),
+const ANTI_ALIASING: [(Option<RenderScale>, &str, &str); 4] = [
+    (None, "As the preset", ""),
+    (Some(RenderScale::Full), "Off", ""),
+    (Some(RenderScale::Double), "2×2", ""),
+    (Some(RenderScale::Quadruple), "4×4", ""),
 ];
 
-const TURNTABLES: [(Option<Turntable>, &str); 3] = [
-    (None, "None"),
-    (Some(Turntable::Camera), "Camera"),
-    (Some(Turntable::Scene), "Scene"),
+const TURNTABLES: [(Option<Turntable>, &str, &str); 3] = [
+    (None, "None", "No turn beside that of the preset"),
+    (
+        Some(Turntable::Camera),
+        "Camera",
+        "The camera goes around the scene once",
+    ),
+    (
+        Some(Turntable::Scene),
+        "Scene",
+        "The scene turns once, in front of a still camera and light",
+    ),
+];
+
+/// Whether the film goes from the look of the kept preset to that of the open one.
+const LOOKS: [(bool, &str, &str); 2] = [
+    (false, "This preset", "Its own look in every frame"),
+    (
+        true,
+        "From A to B",
+        "The first frame has the look of the preset kept as A, the last one that of this preset, and numbers and colors are in between",
+    ),
 ];
 
 /// The dialog that exports a film.
@@ -269,42 +293,35 @@ impl FilmPanel {
             .form
             .as_ref()
             .and_then(|form| form.fault(&state.session.preset().clock));
-        match (&fault, &self.failure) {
-            (Some(fault), _) => theme::notice(ui, theme::amber(), fault),
+        let notice = match (&fault, &self.failure) {
+            (Some(fault), _) => Some((theme::amber(), fault.clone())),
             (None, Some(Failure::Stopped)) => {
-                let is_kept = self
-                    .form
-                    .as_ref()
-                    .is_some_and(|form| form.format.keeps_frames());
-                theme::notice(ui, theme::amber(), stopped_text(is_kept));
+                let is_kept = |form: &Form| form.format.keeps_frames();
+                let is_kept = self.form.as_ref().is_some_and(is_kept);
+                Some((theme::amber(), stopped_text(is_kept).to_owned()))
             }
-            (None, Some(Failure::Taken(reason))) => theme::notice(
-                ui,
-                theme::amber(),
-                &format!("{reason}. Replace overwrites it."),
-            ),
-            (None, Some(Failure::Other(reason))) => theme::notice(ui, theme::red(), reason),
-            (None, None) => {}
+            (None, Some(Failure::Taken(reason))) => {
+                Some((theme::amber(), format!("{reason}. Replace overwrites it.")))
+            }
+            (None, Some(Failure::Other(reason))) => Some((theme::red(), reason.clone())),
+            (None, None) => None,
+        };
+        if let Some((color, text)) = notice {
+            theme::notice(ui, color, &text);
         }
         ui.add_space(theme::HALF);
         let is_taken = matches!(self.failure, Some(Failure::Taken(_)));
         let is_ready = fault.is_none() && self.ending.is_none() && state.session.scene().is_some();
         let (mut is_started, mut is_closed) = (is_entered && is_ready && !is_taken, false);
-        let row = egui::vec2(ui.available_width(), theme::ROW);
-        ui.allocate_ui_with_layout(
-            row,
-            egui::Layout::right_to_left(egui::Align::Center),
-            |ui| {
+        ui.horizontal(|ui| {
+            at_right(ui, |ui| {
                 let verb = if is_taken { "Replace" } else { "Export film" };
-                let button = egui::Button::new(verb)
-                    .fill(theme::accent_ground())
-                    .min_size(egui::vec2(96.0, theme::ROW));
+                let button = main_button(verb).min_size(vec2(96.0, theme::ROW));
                 is_started |= ui.add_enabled(is_ready, button).clicked();
-                is_closed = ui
-                    .add(egui::Button::new("Close").min_size(egui::vec2(72.0, theme::ROW)))
-                    .clicked();
-            },
-        );
+                let close = Button::new("Close").min_size(vec2(72.0, theme::ROW));
+                is_closed = ui.add(close).clicked();
+            });
+        });
         if is_started {
             self.start(is_taken, &state.session.preset().clock, commands);
         }
@@ -328,13 +345,8 @@ impl Panel for FilmPanel {
         let mut is_open = true;
         let area = ui.ctx().content_rect();
         let width = WIDTH.min(area.width() - 4.0 * theme::GAP);
-        egui::Window::new("Export film")
-            .open(&mut is_open)
-            .collapsible(false)
-            .resizable(false)
+        centered(ui.ctx(), "Export film", &mut is_open)
             .default_width(width)
-            .pivot(egui::Align2::CENTER_CENTER)
-            .default_pos(area.center())
             .show(ui.ctx(), |ui| {
                 ui.set_width(width);
                 if let Some((request, progress)) = self.running.clone() {
@@ -349,7 +361,7 @@ impl Panel for FilmPanel {
                 let is_entered = self
                     .form
                     .as_mut()
-                    .is_some_and(|form| form_ui(ui, form, &clock, takes_focus));
+                    .is_some_and(|form| film_ui(ui, form, &clock, takes_focus));
                 if before != self.form.as_ref().map(|form| form.request(false)) {
                     // What was agreed to, or failed, was another film.
                     self.failure = None;
@@ -361,132 +373,66 @@ impl Panel for FilmPanel {
 }
 
 /// Returns true if Enter was pressed in the path.
-fn form_ui(ui: &mut Ui, form: &mut Form, clock: &Clock, takes_focus: bool) -> bool {
-    ui.horizontal(|ui| {
-        for format in Format::here() {
-            if ui
-                .selectable_label(form.format == format, format.name())
-                .clicked()
-            {
-                form.choose(format);
-            }
-        }
-    });
+fn film_ui(ui: &mut Ui, form: &mut Form, clock: &Clock, takes_focus: bool) -> bool {
+    let mut format = form.format;
+    let formats = Format::here().map(|format| (format, format.name(), ""));
+    if ui
+        .horizontal(|ui| words_ui(ui, "", &mut format, formats))
+        .inner
+    {
+        form.choose(format);
+    }
     ui.add_space(theme::HALF);
-    let path = egui::TextEdit::singleline(&mut form.path)
-        .hint_text("Path")
-        .desired_width(f32::INFINITY);
-    let path = ui.add(path).accessible_name("Path of the film");
+    let path = text_ui(ui, "Path of the film", "Path", &mut form.path);
     let is_entered = path.lost_focus() && ui.input(|i| i.key_pressed(Key::Enter));
     if takes_focus {
         path.request_focus();
     }
     let schedule = form.request(false).schedule(clock).ok();
     if let Some(schedule) = &schedule {
-        ui.add(egui::Label::new(theme::weak(about(form, schedule))).truncate());
+        ui.add(Label::new(theme::weak(about(form, schedule))).truncate());
     }
     ui.add_space(theme::HALF);
-    Grid::new("film")
-        .num_columns(2)
-        .spacing([theme::GAP, theme::HALF])
-        .show(ui, |ui| {
-            ui.label("Size");
-            ui.horizontal(|ui| {
-                let step = if form.format.needs_ffmpeg() { 2 } else { 1 };
-                size_ui(ui, "the film", &mut form.size, step, MAX_SIDE);
-            });
-            ui.end_row();
-            ui.label("Frames per second");
-            ui.add(
-                DragValue::new(&mut form.fps)
-                    .range(1.0..=FilmSettings::MAX_FPS)
-                    .max_decimals(3)
-                    .speed(0.5),
-            )
-            .accessible_name("Frames per second");
-            ui.end_row();
-            ui.label("Range");
-            ui.horizontal(|ui| {
-                for (time_s, name) in form
-                    .range_s
-                    .iter_mut()
-                    .zip(["Begin of the film", "End of the film"])
-                {
-                    ui.add(
-                        DragValue::new(time_s)
-                            .suffix(" s")
-                            .speed(0.05)
-                            .max_decimals(3),
-                    )
-                    .accessible_name(name);
-                }
-                if form.range_s != clock.range_s && ui.small_button("Whole timeline").clicked() {
-                    form.range_s = clock.range_s;
-                }
-            });
-            ui.end_row();
-            ui.label("AA")
-                .on_hover_text("Anti-aliasing: samples of a pixel");
-            let shown = ANTI_ALIASING
-                .iter()
-                .find(|(scale, _)| *scale == form.scale)
-                .map_or("", |(_, name)| name);
-            let menu = ComboBox::from_id_salt("film anti-aliasing")
-                .selected_text(shown)
-                .show_ui(ui, |ui| {
-                    for (scale, name) in ANTI_ALIASING {
-                        ui.selectable_value(&mut form.scale, scale, name);
-                    }
-                });
-            menu.response.accessible_name("Anti-aliasing of the film");
-            ui.end_row();
-            ui.label("Turntable")
-                .on_hover_text("One turn over the range. The preset is not changed.");
-            ui.horizontal(|ui| {
-                for (turntable, name) in TURNTABLES {
-                    let hint = match turntable {
-                        None => "No turn beside that of the preset",
-                        Some(Turntable::Camera) => "The camera goes around the scene once",
-                        Some(Turntable::Scene) => {
-                            "The scene turns once, in front of a still camera and light"
-                        }
-                    };
-                    let label = ui
-                        .selectable_label(form.turntable == turntable, name)
-                        .on_hover_text(hint);
-                    if label.clicked() {
-                        form.turntable = turntable;
-                    }
-                    label.accessible_name(format!("Turntable {name}"));
-                }
-            });
-            ui.end_row();
-            if form.a.is_some() {
-                look_ui(ui, &mut form.is_from_a);
+    form_ui(ui, "film", |ui| {
+        field_ui(ui, "Size", "", |ui| {
+            let step = if form.format.needs_ffmpeg() { 2 } else { 1 };
+            size_ui(ui, "the film", &mut form.size, step, MAX_SIDE);
+        });
+        field_ui(ui, "Frames per second", "", |ui| {
+            let range = 1.0..=FilmSettings::MAX_FPS;
+            number_ui(ui, "Frames per second", &mut form.fps, range, (0.5, ""));
+        });
+        field_ui(ui, "Range", "", |ui| {
+            let [begin, end] = &mut form.range_s;
+            for (time_s, name) in [(begin, "Begin of the film"), (end, "End of the film")] {
+                number_ui(ui, name, time_s, f64::MIN..=f64::MAX, (0.05, " s"));
+            }
+            if form.range_s != clock.range_s && ui.small_button("Whole timeline").clicked() {
+                form.range_s = clock.range_s;
             }
         });
-    ui.add_space(theme::HALF);
-    is_entered
-}
-
-/// Whether the film goes from the look of the kept preset to that of the open one.
-fn look_ui(ui: &mut Ui, is_from_a: &mut bool) {
-    const LOOKS: [(bool, &str, &str); 2] = [
-        (false, "This preset", "Its own look in every frame"),
-        (
-            true,
-            "From A to B",
-            "The first frame has the look of the preset kept as A, the last one that of this preset, and numbers and colors are in between",
-        ),
-    ];
-    ui.label("Look");
-    ui.horizontal(|ui| {
-        for (from_a, name, hint) in LOOKS {
-            ui.selectable_value(is_from_a, from_a, name)
-                .on_hover_text(hint);
+        field_ui(ui, "AA", "Anti-aliasing: samples of a pixel", |ui| {
+            let is_shown = |(scale, ..): &&(_, &str, &str)| *scale == form.scale;
+            let now = ANTI_ALIASING
+                .iter()
+                .find(is_shown)
+                .map_or("", |(_, name, _)| name);
+            let name = "Anti-aliasing of the film";
+            let (scale, _) = menu_ui(ui, name, (now, 100.0), Some(&form.scale), ANTI_ALIASING);
+            form.scale = scale.unwrap_or(form.scale);
+        });
+        let hint = "One turn over the range. The preset is not changed.";
+        field_ui(ui, "Turntable", hint, |ui| {
+            words_ui(ui, "Turntable ", &mut form.turntable, TURNTABLES);
+        });
+        if form.a.is_some() {
+            field_ui(ui, "Look", "", |ui| {
+                words_ui(ui, "", &mut form.is_from_a, LOOKS);
+            });
         }
     });
-    ui.end_row();
+    ui.add_space(theme::HALF);
+    is_entered
 }
 
 /// What a person reads when a film was stopped: which of its files are there.
@@ -523,7 +469,7 @@ fn about(form: &Form, schedule: &crate::film::Schedule) -> String {
 fn progress_ui(ui: &mut Ui, request: &Request, progress: &Progress) -> bool {
     let counts = progress.read();
     let path = request.path.display().to_string();
-    ui.label(RichText::new(cut_middle(&path, 56)).color(theme::text_strong()))
+    ui.label(theme::strong(cut_middle(&path, 56)))
         .on_hover_text(path);
     ui.add_space(theme::HALF);
     let text = if counts.all == 0 {
@@ -531,25 +477,18 @@ fn progress_ui(ui: &mut Ui, request: &Request, progress: &Progress) -> bool {
     } else {
         format!("{} of {} frames", counts.done, counts.all)
     };
-    ui.add(
-        egui::ProgressBar::new(counts.done as f32 / counts.all.max(1) as f32)
-            .text(text)
-            .animate(true),
-    );
+    let part = counts.done as f32 / counts.all.max(1) as f32;
+    ui.add(egui::ProgressBar::new(part).text(text).animate(true));
     let left = match counts.left_s() {
         Some(_) if counts.done == counts.all => "Finishing the file".into(),
         Some(left_s) => time_left_text(left_s),
         None => "The first frame is drawn".into(),
     };
     ui.add_space(theme::HALF);
-    let mut is_stopped = false;
     ui.horizontal(|ui| {
         ui.label(theme::weak(left));
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            is_stopped = ui
-                .add(egui::Button::new("Cancel").min_size(egui::vec2(72.0, theme::ROW)))
-                .clicked();
-        });
-    });
-    is_stopped
+        let cancel = Button::new("Cancel").min_size(vec2(72.0, theme::ROW));
+        at_right(ui, |ui| ui.add(cancel).clicked())
+    })
+    .inner
 }

@@ -10,7 +10,7 @@ use crate::app::{
     },
     widgets::{
         icons::{Icon, icon_button},
-        panel::Panel,
+        panel::{Panel, at_right},
         theme,
     },
 };
@@ -23,7 +23,7 @@ impl Panel for LogPanel {
         let log = &state.log;
         ui.horizontal(|ui| {
             ui.label(theme::heading("Log"));
-            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            at_right(ui, |ui| {
                 if icon_button(ui, Icon::Cross, "Clear the log").clicked() {
                     commands.send(Command::ClearLog);
                 }
@@ -72,9 +72,8 @@ pub fn toasts_ui(ctx: &egui::Context, log: &Log, area: Rect, now_s: f64) {
         .show(ctx, |ui| {
             ui.set_max_width((area.width() - 20.0).clamp(160.0, 380.0));
             for toast in log.toasts(now_s) {
-                theme::toast_frame(toast.level.color()).show(ui, |ui| {
-                    ui.label(RichText::new(&toast.text).color(theme::text_strong()))
-                });
+                theme::toast_frame(toast.level.color())
+                    .show(ui, |ui| ui.label(theme::strong(&toast.text)));
             }
         });
 }

@@ -2,7 +2,6 @@
 
 pub mod anti_aliasing;
 pub mod brought_code;
-pub mod cheat_sheet;
 pub mod code;
 pub mod dialogs;
 pub mod effect_browser;
@@ -25,11 +24,10 @@ pub mod trade;
 pub mod viewport;
 
 use self::{
-    cheat_sheet::CheatSheet, code::CodePanel, dialogs::Dialogs, extremes::Extremes,
-    film::FilmPanel, inspector::Inspector, log::LogPanel, naming::NameDialog, palette::Palette,
-    preset_browser::PresetBrowser, randomize::RandomizePanel, review::ReviewPanel,
-    settings::SettingsWindow, sweep::SweepPanel, timeline::Timeline, timing::TimingPanel,
-    topbar::TopBar, trade::TradePanel, viewport::Viewport,
+    code::CodePanel, dialogs::Dialogs, extremes::Extremes, film::FilmPanel, inspector::Inspector,
+    log::LogPanel, naming::NameDialog, palette::Palette, preset_browser::PresetBrowser,
+    randomize::RandomizePanel, review::ReviewPanel, settings::SettingsWindow, sweep::SweepPanel,
+    timeline::Timeline, timing::TimingPanel, topbar::TopBar, trade::TradePanel, viewport::Viewport,
 };
 use crate::preset_file::Folders;
 
@@ -44,7 +42,6 @@ pub struct Panels {
     pub log: LogPanel,
     pub viewport: Viewport,
     pub dialogs: Dialogs,
-    pub cheat_sheet: CheatSheet,
     pub settings: SettingsWindow,
     pub extremes: Extremes,
     pub review: ReviewPanel,
@@ -85,7 +82,6 @@ impl Panels {
             log: LogPanel,
             viewport: Viewport::default(),
             dialogs: Dialogs::default(),
-            cheat_sheet: CheatSheet::default(),
             settings: SettingsWindow::default(),
             extremes: Extremes::default(),
             review: ReviewPanel::default(),

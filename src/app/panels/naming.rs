@@ -1,17 +1,19 @@
 //! The dialog that asks for a name: of a preset, of saved values of an effect, or of a bookmark.
 
-use eframe::egui::{self, Button, Key, RichText, TextEdit, Ui};
+use eframe::egui::Ui;
 
-use crate::{
-    app::{
-        files::command::{LibraryCommand, Naming},
-        shell::{
-            command::{Command, Commands},
-            state::State,
-        },
-        widgets::{panel::Panel, theme},
+use super::dialogs::buttons::buttons;
+use crate::app::{
+    files::command::{LibraryCommand, Naming},
+    shell::{
+        command::{Command, Commands},
+        state::State,
     },
-    preset_file::MAX_NAME,
+    widgets::{
+        form::name_ui,
+        panel::{Panel, modal},
+        theme,
+    },
 };
 
 const WIDTH: f32 = 400.0;
@@ -59,39 +61,29 @@ impl NameDialog {
     }
 }
 
-/// The choice of a button.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Choice {
-    Accept,
-    Cancel,
-}
-
 impl Panel for NameDialog {
     fn ui(&mut self, ui: &mut Ui, _: &State, commands: &Commands) {
         let Some(open) = &mut self.0 else { return };
-        let frame = egui::Frame::window(&ui.ctx().global_style()).inner_margin(16.0);
-        let modal = egui::Modal::new(egui::Id::unique("name"))
-            .frame(frame)
-            .show(ui.ctx(), |ui| {
-                ui.set_width(WIDTH.min(ui.ctx().content_rect().width() - 64.0));
-                dialog_ui(ui, open)
-            });
-        let choice = modal
-            .inner
-            .or_else(|| modal.should_close().then_some(Choice::Cancel));
-        match choice {
-            Some(Choice::Accept) => {
+        let modal = modal(ui.ctx(), "name", 16.0).show(ui.ctx(), |ui| {
+            ui.set_width(WIDTH.min(ui.ctx().content_rect().width() - 64.0));
+            dialog_ui(ui, open)
+        });
+        let is_closed = modal.should_close();
+        match modal.inner.or(is_closed.then_some(false)) {
+            Some(true) if !open.name.trim().is_empty() => {
                 if let Some(Open { naming, name, .. }) = self.0.take() {
                     commands.send(Command::Library(LibraryCommand::Name(naming, name)));
                 }
             }
-            Some(Choice::Cancel) => self.0 = None,
+            Some(true) => open.error = Some("Type a name.".into()),
+            Some(false) => self.0 = None,
             None => {}
         }
     }
 }
 
-fn dialog_ui(ui: &mut Ui, open: &mut Open) -> Option<Choice> {
+/// Returns true if the name is accepted, and false if the dialog is to be closed.
+fn dialog_ui(ui: &mut Ui, open: &mut Open) -> Option<bool> {
     let (title, about, verb) = match &open.naming {
         Naming::Preset { path, title } => (
             format!("Rename {title}"),
@@ -109,56 +101,13 @@ fn dialog_ui(ui: &mut Ui, open: &mut Open) -> Option<Choice> {
             "Rename",
         ),
     };
-    ui.label(
-        RichText::new(title)
-            .size(15.0)
-            .color(theme::text_strong())
-            .strong(),
-    );
+    ui.label(theme::title(title));
     ui.label(theme::weak(about));
     ui.add_space(theme::HALF);
-    let mut shown = TextEdit::singleline(&mut open.name)
-        .hint_text("Name")
-        .char_limit(MAX_NAME)
-        .desired_width(f32::INFINITY)
-        .show(ui);
-    if std::mem::take(&mut open.selects) {
-        let end = egui::text::CCursor::new(open.name.chars().count());
-        shown
-            .state
-            .cursor
-            .set_char_range(Some(egui::text::CCursorRange::two(
-                egui::text::CCursor::new(0),
-                end,
-            )));
-        shown.state.store(ui.ctx(), shown.response.id);
-    }
-    let field = shown.response.response.accessible_name("Name");
-    let is_entered = field.lost_focus() && ui.input(|i| i.key_pressed(Key::Enter));
-    if !is_entered && ui.memory(|memory| memory.focused().is_none()) {
-        field.request_focus();
-    }
+    let is_entered = name_ui(ui, "Name", &mut open.name, &mut open.selects);
     if let Some(error) = &open.error {
         theme::notice(ui, theme::amber(), error);
     }
-    ui.add_space(theme::HALF);
-    let mut choice = is_entered.then_some(Choice::Accept);
-    ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-        let accept = Button::new(verb)
-            .fill(theme::accent_ground())
-            .min_size(egui::vec2(72.0, theme::ROW));
-        if ui
-            .add_enabled(!open.name.trim().is_empty(), accept)
-            .clicked()
-        {
-            choice = Some(Choice::Accept);
-        }
-        if ui
-            .add(Button::new("Cancel").min_size(egui::vec2(72.0, theme::ROW)))
-            .clicked()
-        {
-            choice = Some(Choice::Cancel);
-        }
-    });
-    choice
+    let options = [(verb, true, true), ("Cancel", false, false)];
+    buttons(ui, &options, |_| None).or(is_entered.then_some(true))
 }

@@ -2,10 +2,13 @@
 
 use std::sync::Arc;
 
-use eframe::egui::{self, RichText, Ui};
+use eframe::egui::Ui;
 
 use crate::{
-    app::{files::command::Origin, widgets::theme},
+    app::{
+        files::command::Origin,
+        widgets::{form::name_ui, theme},
+    },
     effect_files::{Catalog, Hook, check_name},
     effects::Effect,
 };
@@ -44,9 +47,7 @@ impl NewEffect {
             selects: true,
         }
     }
-}
 
-impl NewEffect {
     /// True if an effect can have this name; otherwise the dialog says why not.
     pub fn check(&mut self, catalog: &Catalog) -> bool {
         let name = self.name.trim().to_owned();
@@ -82,31 +83,10 @@ pub fn fields_ui(ui: &mut Ui, dialog: &mut NewEffect) -> bool {
                 .to_owned(),
         ),
     };
-    ui.label(
-        RichText::new(title)
-            .size(15.0)
-            .color(theme::text_strong())
-            .strong(),
-    );
+    ui.label(theme::title(title));
     ui.label(theme::weak(about));
     ui.add_space(theme::HALF);
-    let mut shown = egui::TextEdit::singleline(name)
-        .hint_text("Name, for instance ink")
-        .desired_width(f32::INFINITY)
-        .show(ui);
-    if std::mem::take(selects) {
-        let all = egui::text::CCursorRange::two(
-            egui::text::CCursor::new(0),
-            egui::text::CCursor::new(name.chars().count()),
-        );
-        shown.state.cursor.set_char_range(Some(all));
-        shown.state.store(ui.ctx(), shown.response.id);
-    }
-    let field = shown.response.response.accessible_name("Name");
-    let is_entered = field.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
-    if !is_entered && ui.memory(|memory| memory.focused().is_none()) {
-        field.request_focus();
-    }
+    let is_entered = name_ui(ui, "Name, for instance ink", name, selects);
     if let Origin::Template(hook) = origin {
         for option in Hook::ALL {
             ui.radio_value(hook, option, self::about(option))
@@ -116,7 +96,6 @@ pub fn fields_ui(ui: &mut Ui, dialog: &mut NewEffect) -> bool {
     if let Some(error) = error {
         theme::notice(ui, theme::amber(), error);
     }
-    ui.add_space(theme::HALF);
     is_entered
 }
 

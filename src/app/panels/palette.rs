@@ -10,7 +10,10 @@ use crate::{
         editing::session::Session,
         palette::{Choice, Entry, MAX_LISTED, commands, entries, rank},
         shell::{action::Action, command::Commands, state::State},
-        widgets::{panel::Panel, theme},
+        widgets::{
+            panel::{Panel, at_right, describe_chosen},
+            theme,
+        },
     },
     preset_file::{self, GalleryEntry, PresetFile},
 };
@@ -214,9 +217,7 @@ fn list_ui(ui: &mut Ui, open: &mut Open, height: f32) -> Option<usize> {
 
 fn row_ui(ui: &mut Ui, entry: &Entry, is_selected: bool) -> egui::Response {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), ROW), Sense::click());
-    response.widget_info(|| {
-        egui::WidgetInfo::selected(egui::Role::Button, true, is_selected, &entry.text)
-    });
+    describe_chosen(&response, egui::Role::Button, is_selected, &entry.text);
     if !entry.keys.is_empty() {
         ui.ctx().accesskit_node_builder(response.id, |node| {
             node.set_keyboard_shortcut(entry.keys.as_str())
@@ -317,12 +318,8 @@ fn footer_ui(ui: &mut Ui, open: &Open) {
         .map_or("", |entry| &entry.about);
     ui.horizontal(|ui| {
         ui.set_min_height(16.0);
-        ui.with_layout(egui::Layout::right_to_left(Align::Center), |ui| {
-            ui.label(
-                RichText::new("Arrow keys choose   Enter runs   Esc closes")
-                    .size(11.0)
-                    .color(theme::text_weak()),
-            );
+        at_right(ui, |ui| {
+            ui.label(theme::small("Arrow keys choose   Enter runs   Esc closes"));
             ui.with_layout(egui::Layout::left_to_right(Align::Center), |ui| {
                 ui.add(
                     egui::Label::new(RichText::new(about).size(11.5).color(theme::text()))

@@ -17,7 +17,10 @@ use crate::{
             command::{Command, Commands},
             state::State,
         },
-        widgets::{panel::Panel, theme},
+        widgets::{
+            panel::{Panel, describe_chosen, main_button, picture_ui, plate, window},
+            theme,
+        },
     },
     effects::{EnabledEffect, Stack},
 };
@@ -123,10 +126,7 @@ impl Panel for RandomizePanel {
         self.request(state, commands);
         let mut is_open = true;
         let area = ui.ctx().content_rect();
-        egui::Window::new("Randomize")
-            .open(&mut is_open)
-            .collapsible(false)
-            .resizable(false)
+        window("Randomize", &mut is_open)
             .default_pos(area.right_top() + vec2(-800.0, 96.0))
             .default_width(440.0)
             .show(ui.ctx(), |ui| {
@@ -152,17 +152,20 @@ impl Panel for RandomizePanel {
 
 fn controls_ui(ui: &mut Ui, state: &State, commands: &Commands) {
     ui.horizontal(|ui| {
-        let button = egui::Button::new("Randomize").fill(theme::accent_ground());
         let is_possible = !state.session.preset().stack.0.is_empty();
-        let hint = format!("Give every parameter that is not locked a random value ({})", Action::Randomize.shortcut_text());
-        if ui.add_enabled(is_possible, button).on_hover_text(hint).accessible_name("Randomize now").clicked() {
+        let keys = Action::Randomize.shortcut_text();
+        let hint = format!("Give every parameter that is not locked a random value ({keys})");
+        let button = ui.add_enabled(is_possible, main_button("Randomize"));
+        let button = button.on_hover_text(hint).accessible_name("Randomize now");
+        if button.clicked() {
             commands.perform(Action::Randomize);
         }
         ui.label("vary by");
         let mut percent = state.session.randomizer.vary_percent;
         let slider = egui::Slider::new(&mut percent, 1.0..=100.0).step_by(1.0).suffix(" %");
         let hint = "How far a value may go from where it is, in percent of its slider. At 100 % it may go anywhere on it.";
-        if ui.add(slider).on_hover_text(hint).accessible_name("Vary by percent").changed() {
+        let slider = ui.add(slider).on_hover_text(hint);
+        if slider.accessible_name("Vary by percent").changed() {
             commands.send(Command::VaryBy(percent));
         }
     });
@@ -188,9 +191,7 @@ fn locks_ui(ui: &mut Ui, state: &State, commands: &Commands, enabled: &EnabledEf
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 10.0;
         let mut varies = locked < shown.len();
-        let title = RichText::new(&effect.name)
-            .strong()
-            .color(theme::text_strong());
+        let title = theme::strong(&effect.name).strong();
         let all = ui
             .checkbox(&mut varies, title)
             .on_hover_text("Let all of its parameters vary, or lock them all");
@@ -259,12 +260,7 @@ fn seed_ui(
 ) -> egui::Response {
     let width = THUMBNAIL as f32;
     let (rect, response) = ui.allocate_exact_size(vec2(width, 0.625 * width), Sense::click());
-    match picture {
-        Some(Some(texture)) => egui::Image::from_texture((texture.id(), rect.size()))
-            .corner_radius(4.0)
-            .paint_at(ui, rect),
-        _ => drop(ui.painter().rect_filled(rect, 4.0, theme::well())),
-    }
+    picture_ui(ui, rect, picture.and_then(Option::as_ref));
     let edge = match () {
         () if is_current => theme::accent(),
         () if response.hovered() || response.has_focus() => theme::text_strong(),
@@ -276,18 +272,18 @@ fn seed_ui(
         (if is_current { 2.0 } else { 1.0 }, edge),
         egui::StrokeKind::Inside,
     );
-    let note = ui.painter().layout_no_wrap(
-        seed.to_string(),
-        egui::FontId::proportional(11.0),
-        theme::text_strong(),
+    plate(
+        ui.painter(),
+        rect.min,
+        egui::Align2::LEFT_TOP,
+        rect.shrink(4.0),
+        &seed.to_string(),
     );
-    let plate = egui::Rect::from_min_size(rect.min + vec2(4.0, 4.0), note.size() + vec2(8.0, 2.0));
-    ui.painter()
-        .rect_filled(plate, 3.0, egui::Color32::from_black_alpha(150));
-    ui.painter()
-        .galley(plate.min + vec2(4.0, 1.0), note, theme::text_strong());
-    response.widget_info(|| {
-        egui::WidgetInfo::selected(egui::Role::Button, true, is_current, format!("Seed {seed}"))
-    });
+    describe_chosen(
+        &response,
+        egui::Role::Button,
+        is_current,
+        format!("Seed {seed}"),
+    );
     response.on_hover_text(format!("Go back to seed {seed}"))
 }

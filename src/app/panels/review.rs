@@ -14,7 +14,11 @@ use crate::{
             command::{Command, Commands},
             state::State,
         },
-        widgets::{panel::Panel, theme},
+        widgets::{
+            form::modes_ui,
+            panel::{Panel, describe, main_button, performs, window},
+            theme,
+        },
     },
     measure::compare::difference_picture,
 };
@@ -139,9 +143,7 @@ impl ReviewPanel {
             }
         }
         let has_golden = golden.is_some();
-        response.widget_info(|| {
-            egui::WidgetInfo::labeled(egui::Role::Image, true, format!("Review: {shown}"))
-        });
+        describe(&response, egui::Role::Image, format!("Review: {shown}"));
         if has_golden && mode == Mode::Wipe {
             divider_ui(ui, "review wipe", &mut self.split, rect);
         }
@@ -149,22 +151,13 @@ impl ReviewPanel {
 
     fn entry_ui(&mut self, ui: &mut Ui, entry: &Entry, commands: &Commands) {
         ui.set_width(PICTURE);
-        ui.label(RichText::new(&entry.name).color(theme::text_strong()));
+        ui.label(theme::strong(&entry.name));
         match &entry.drawn {
             None => drop(ui.label(theme::weak("The oracle draws it"))),
             Some(Err(error)) => theme::notice(ui, theme::red(), error),
             Some(Ok(drawn)) => {
                 ui.horizontal(|ui| {
-                    for (mode, name, hint) in MODES {
-                        let button = egui::Button::new(name).small().selected(self.mode == mode);
-                        let button = ui.add(button).on_hover_text(hint);
-                        if button
-                            .accessible_name(format!("Review: {}", name.to_lowercase()))
-                            .clicked()
-                        {
-                            self.mode = mode;
-                        }
-                    }
+                    modes_ui(ui, "Review", &mut self.mode, MODES);
                 });
                 self.picture_ui(ui, drawn);
                 ui.label(theme::weak(drawn.text.as_str()));
@@ -182,9 +175,7 @@ impl ReviewPanel {
             ] {
                 let is_ready = action != Action::AcceptGolden || matches!(entry.drawn, Some(Ok(_)));
                 let button = ui.add_enabled(is_ready, egui::Button::new(text));
-                if button.on_hover_text(action.hint()).clicked() {
-                    commands.perform(action);
-                }
+                performs(button, commands, action);
             }
         });
     }
@@ -227,7 +218,7 @@ fn begin_ui(ui: &mut Ui, review: &Review, commands: &Commands) {
             ui.label(theme::weak(format!("{done} of {planned} presets drawn")));
         }
         None => {
-            let button = egui::Button::new("Look for differences").fill(theme::accent_ground());
+            let button = main_button("Look for differences");
             let hint = "The oracle draws every preset that has a golden, beside the window";
             if ui.add(button).on_hover_text(hint).clicked() {
                 send(ReviewCommand::Begin);
@@ -282,10 +273,7 @@ impl Panel for ReviewPanel {
         let mut is_open = true;
         let area = ui.ctx().content_rect();
         let review = &state.picture.review;
-        egui::Window::new("Review")
-            .open(&mut is_open)
-            .collapsible(false)
-            .resizable(false)
+        window("Review", &mut is_open)
             .default_pos(area.left_top() + vec2(280.0, 72.0))
             .show(ui.ctx(), |ui| {
                 ui.set_width((QUEUE + PICTURE + 2.0 * theme::GAP).min(area.width() - 48.0));

@@ -1,17 +1,19 @@
-//! The settings window: theme, size of texts and controls, and the keys of every action.
+//! The settings window: theme, size of texts and controls, and the cheat sheet: every action with
+//! its keys, which can be changed, and its present value.
 
-use eframe::egui::{self, Event, Key, RichText, Ui, vec2};
+use eframe::egui::{self, Button, Event, Key, Label, RichText, Ui, vec2};
 
 use crate::app::{
     settings::{SCALES, keymap},
     shell::{
-        action::{Action, actions, shortcut_text},
+        action::{Action, POINTER, actions, shortcut_text},
         command::{Command, Commands, SettingsCommand, Toggle},
         state::State,
     },
     widgets::{
+        form::{field_ui, form_ui, is_entered, text_ui, words_ui},
         icons::{Icon, icon_button},
-        panel::Panel,
+        panel::{Panel, at_right, centered, performs},
         theme::{self, ThemeChoice},
     },
 };
@@ -63,138 +65,131 @@ impl SettingsWindow {
         }
     }
 
+    /// The cheat sheet: actions and gestures of the pointer that contain what is searched.
     fn keys_ui(&mut self, ui: &mut Ui, state: &State, commands: &Commands, height: f32) {
         ui.horizontal(|ui| {
             ui.label(theme::heading("Keys"));
-            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                if ui
-                    .button("Reset all")
-                    .on_hover_text("Give every action its own keys again")
-                    .clicked()
-                {
+            at_right(ui, |ui| {
+                let reset = ui.button("Reset all");
+                let hint = "Give every action its own keys again";
+                if reset.on_hover_text(hint).clicked() {
                     Self::send(commands, SettingsCommand::ResetAllKeys);
                 }
-                let search = egui::TextEdit::singleline(&mut self.search)
-                    .hint_text("Search")
-                    .desired_width(160.0);
-                ui.add(search).accessible_name("Search keys");
             });
         });
+        let name = "Search actions and keys";
+        let field = text_ui(ui, name, name, &mut self.search);
+        if self.binding.is_none() {
+            // Keys that are typed while the window is open go into the search.
+            is_entered(ui, &field);
+        }
+        ui.add_space(theme::HALF);
         let search = self.search.to_lowercase();
-        let keys = &state.settings.keys;
-        egui::ScrollArea::vertical()
-            .max_height(height)
-            .auto_shrink([false, false])
-            .show(ui, |ui| {
-                for (action, label, _) in actions() {
-                    let shortcuts = keys
-                        .of(*action)
-                        .iter()
-                        .map(shortcut_text)
-                        .collect::<Vec<_>>()
-                        .join("  ");
-                    if !format!("{label} {shortcuts}")
-                        .to_lowercase()
-                        .contains(&search)
-                    {
-                        continue;
-                    }
-                    ui.horizontal(|ui| {
-                        ui.set_min_height(theme::ROW);
-                        label_ui(ui, 230.0, label);
-                        if matches!(action, Action::CopyPreset | Action::PastePreset) {
-                            // The system sends these as events of the clipboard, whatever their
-                            // keys are.
-                            ui.label(
-                                RichText::new(action.shortcut_text())
-                                    .monospace()
-                                    .color(theme::text_weak()),
-                            );
-                            return;
-                        }
-                        let is_waiting = self.binding == Some(*action);
-                        let text = if is_waiting {
-                            "Press a key"
-                        } else if shortcuts.is_empty() {
-                            "none"
-                        } else {
-                            &shortcuts
-                        };
-                        let color = if is_waiting {
-                            theme::accent()
-                        } else if shortcuts.is_empty() {
-                            theme::text_weak()
-                        } else {
-                            theme::text_strong()
-                        };
-                        let button =
-                            egui::Button::new(RichText::new(text).monospace().color(color))
-                                .min_size(vec2(150.0, theme::ROW - 2.0));
-                        let button = ui
-                            .add(button.selected(is_waiting))
-                            .on_hover_text("Press another key for this");
-                        if button.accessible_name(format!("Keys of {label}")).clicked() {
-                            self.binding = if is_waiting { None } else { Some(*action) };
-                        }
-                        let can_clear = !shortcuts.is_empty();
-                        if ui
-                            .add_enabled_ui(can_clear, |ui| {
-                                icon_button(ui, Icon::Cross, &format!("No key for {label}"))
-                            })
-                            .inner
-                            .clicked()
-                        {
-                            Self::send(commands, SettingsCommand::Bind(*action, None));
-                        }
-                        if keys.is_bound(*action)
-                            && icon_button(ui, Icon::Reset, &format!("Reset keys of {label}"))
-                                .clicked()
-                        {
-                            Self::send(commands, SettingsCommand::ResetKeys(*action));
-                        }
-                    });
+        let is_found =
+            |label: &str, how: &str| format!("{label} {how}").to_lowercase().contains(&search);
+        let rows = egui::ScrollArea::vertical().max_height(height);
+        rows.auto_shrink([false, false]).show(ui, |ui| {
+            let mut count = 0;
+            for (action, label, _) in actions() {
+                let keys = state.settings.keys.of(*action).iter().map(shortcut_text);
+                let keys = match keys.collect::<Vec<_>>().join("  ") {
+                    none if none.is_empty() => action.shortcut_text(),
+                    keys => keys,
+                };
+                if is_found(label, &keys) {
+                    count += 1;
+                    ui.horizontal(|ui| self.key_ui(ui, state, commands, (*action, label, &keys)));
                 }
-            });
+            }
+            for (label, gesture) in POINTER.iter().filter(|(label, how)| is_found(label, how)) {
+                count += 1;
+                ui.horizontal(|ui| {
+                    label_ui(ui, 190.0, label);
+                    ui.add(Label::new(RichText::new(*gesture).monospace()).truncate());
+                });
+            }
+            if count == 0 {
+                ui.label(theme::weak("No action matches."));
+            }
+        });
+    }
+
+    /// An action with its keys, the button that changes them, and its present value.
+    fn key_ui(
+        &mut self,
+        ui: &mut Ui,
+        state: &State,
+        commands: &Commands,
+        (action, label, keys): (Action, &str, &str),
+    ) {
+        label_ui(ui, 190.0, label);
+        if matches!(action, Action::CopyPreset | Action::PastePreset) {
+            // The system sends these as events of the clipboard, whatever their keys are.
+            ui.label(theme::weak(keys).monospace());
+            return;
+        }
+        let is_waiting = self.binding == Some(action);
+        let (text, color) = match (is_waiting, keys) {
+            (true, _) => ("Press a key", theme::accent()),
+            (false, "") => ("none", theme::text_weak()),
+            (false, keys) => (keys, theme::text_strong()),
+        };
+        let button = Button::new(RichText::new(text).monospace().color(color))
+            .min_size(vec2(140.0, theme::ROW - 2.0))
+            .selected(is_waiting);
+        let button = ui
+            .add(button)
+            .on_hover_text("Press another key for this")
+            .accessible_name(format!("Keys of {label}"));
+        if button.clicked() {
+            self.binding = (!is_waiting).then_some(action);
+        }
+        let clear = ui.add_enabled_ui(!keys.is_empty(), |ui| {
+            icon_button(ui, Icon::Cross, &format!("No key for {label}"))
+        });
+        if clear.inner.clicked() {
+            Self::send(commands, SettingsCommand::Bind(action, None));
+        }
+        if state.settings.keys.is_bound(action)
+            && icon_button(ui, Icon::Reset, &format!("Reset keys of {label}")).clicked()
+        {
+            Self::send(commands, SettingsCommand::ResetKeys(action));
+        }
+        if let Some(value) = value_text(action, state) {
+            at_right(ui, |ui| ui.label(theme::weak(value)));
+        }
     }
 }
 
 impl Panel for SettingsWindow {
     fn ui(&mut self, ui: &mut Ui, state: &State, commands: &Commands) {
         if !state.open.settings {
-            self.binding = None;
+            *self = Self::default();
             return;
         }
         self.take_key(ui, commands);
         let area = ui.ctx().content_rect();
         let mut is_open = true;
-        egui::Window::new("Settings")
-            .open(&mut is_open)
-            .collapsible(false)
-            .resizable(false)
-            .pivot(egui::Align2::CENTER_CENTER)
-            .default_pos(area.center())
-            .show(ui.ctx(), |ui| {
-                ui.set_width(500.0f32.min(area.width() - 48.0));
-                ui.horizontal(|ui| {
-                    label_ui(ui, 150.0, "Theme");
-                    for choice in ThemeChoice::ALL {
-                        if ui
-                            .selectable_label(state.settings.theme == choice, choice.label())
-                            .clicked()
-                        {
-                            Self::send(commands, SettingsCommand::Theme(choice));
-                        }
+        centered(ui.ctx(), "Settings", &mut is_open).show(ui.ctx(), |ui| {
+            ui.set_width(560.0f32.min(area.width() - 48.0));
+            form_ui(ui, "settings", |ui| {
+                field_ui(ui, "Theme", "", |ui| {
+                    let mut theme = state.settings.theme;
+                    let themes = ThemeChoice::ALL.map(|choice| (choice, choice.label(), ""));
+                    if words_ui(ui, "", &mut theme, themes) {
+                        Self::send(commands, SettingsCommand::Theme(theme));
                     }
                 });
-                scale_ui(ui, state.settings.scale, commands);
-                ui.separator();
-                self.keys_ui(
-                    ui,
-                    state,
-                    commands,
-                    (area.height() - 260.0).clamp(120.0, 420.0),
-                );
+                field_ui(ui, "Texts and controls", "", |ui| {
+                    scale_ui(ui, state.settings.scale, commands);
+                });
             });
+            ui.separator();
+            let height = (area.height() - 260.0).clamp(120.0, 480.0);
+            self.keys_ui(ui, state, commands, height);
+        });
+        // The key that opens it closes it, too; the search would keep it.
+        is_open &= self.takes_key() || !ui.input(|i| i.key_pressed(Key::F1));
         if !is_open {
             commands.send(Command::Toggle(Toggle::Settings));
         }
@@ -206,36 +201,42 @@ fn label_ui(ui: &mut Ui, width: f32, text: &str) {
     let layout = egui::Layout::left_to_right(egui::Align::Center);
     ui.allocate_ui_with_layout(vec2(width, theme::ROW), layout, |ui| {
         ui.set_min_width(width);
-        ui.add(egui::Label::new(text).truncate());
+        ui.add(Label::new(text).truncate());
     });
 }
 
 /// Size of texts and controls.
 fn scale_ui(ui: &mut Ui, scale: f32, commands: &Commands) {
-    ui.horizontal(|ui| {
-        label_ui(ui, 150.0, "Texts and controls");
-        for (text, action, is_enabled) in [
-            ("\u{2212}", Action::ScaleDown, scale > SCALES[0]),
-            ("+", Action::ScaleUp, scale < SCALES[1]),
-            ("100 %", Action::ScaleReset, true),
-        ] {
-            if action == Action::ScaleUp {
-                ui.add_sized(
-                    [52.0, theme::ROW],
-                    egui::Label::new(format!("{:.0} %", scale * 100.0)),
-                );
-            }
-            let button = ui.add_enabled(
-                is_enabled,
-                egui::Button::new(text).min_size(vec2(28.0, theme::ROW - 2.0)),
-            );
-            if button
-                .on_hover_text(action.hint())
-                .accessible_name(action.label())
-                .clicked()
-            {
-                commands.perform(action);
-            }
+    for (text, action, is_enabled) in [
+        ("\u{2212}", Action::ScaleDown, scale > SCALES[0]),
+        ("+", Action::ScaleUp, scale < SCALES[1]),
+        ("100 %", Action::ScaleReset, true),
+    ] {
+        if action == Action::ScaleUp {
+            let percent = Label::new(format!("{:.0} %", scale * 100.0));
+            ui.add_sized([52.0, theme::ROW], percent);
         }
-    });
+        let button = Button::new(text).min_size(vec2(28.0, theme::ROW - 2.0));
+        let button = ui.add_enabled(is_enabled, button);
+        performs(button.accessible_name(action.label()), commands, action);
+    }
+}
+
+/// The present value of what an action changes.
+fn value_text(action: Action, state: &State) -> Option<String> {
+    let open = &state.open;
+    let seed = state.session.randomizer.seed();
+    let (is_so, yes, no) = match action {
+        Action::Undo => return Some(format!("{} steps", state.history.steps())),
+        Action::Randomize => return Some(format!("seed {seed}")),
+        Action::Save => (state.session.is_modified(), "unsaved", "saved"),
+        Action::Play => (state.session.playback.playing, "playing", "paused"),
+        Action::Timeline => (open.timeline, "shown", "hidden"),
+        Action::Overlays => (state.picture.overlays.is_any(), "shown", "hidden"),
+        Action::Handles => (open.handles, "shown", "hidden"),
+        Action::Trade => (open.trade, "shown", "hidden"),
+        Action::Log => (open.log, "shown", "hidden"),
+        _ => return None,
+    };
+    Some(if is_so { yes } else { no }.into())
 }

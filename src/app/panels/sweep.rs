@@ -18,7 +18,11 @@ use crate::{
             command::{Command, Commands},
             state::State,
         },
-        widgets::{panel::Panel, theme},
+        widgets::{
+            form::{menu_ui, number_ui},
+            panel::{Panel, describe, main_button, picture_ui, window},
+            theme,
+        },
     },
     params::{Field, ValueType},
     preset::Preset,
@@ -270,7 +274,7 @@ impl SweepPanel {
         }
         ui.horizontal(|ui| {
             let requested = state.picture.screen.requested();
-            let button = egui::Button::new("Draw the sheet").fill(theme::accent_ground());
+            let button = main_button("Draw the sheet");
             let is_clicked = ui.add_enabled(requested.is_some(), button).clicked();
             if let Some(requested) = requested.filter(|_| is_clicked) {
                 self.start(state, commands, requested);
@@ -305,24 +309,23 @@ fn varied_ui(
 ) {
     let name = ["along the rows", "from row to row"][index];
     ui.add_sized([96.0, theme::ROW], egui::Label::new(theme::weak(name)));
+    let now = varied
+        .as_ref()
+        .map_or("none", |varied| &varied.path)
+        .to_owned();
+    let none = (index > 0).then(|| (String::new(), "none".to_owned(), ""));
+    let paths = known
+        .iter()
+        .map(|(path, _)| (path.clone(), path.clone(), ""));
     let chosen = varied
         .as_ref()
-        .map_or("none", |varied| varied.path.as_str())
-        .to_owned();
-    let menu = egui::ComboBox::from_id_salt(("sweep", index))
-        .selected_text(&chosen)
-        .width(190.0)
-        .show_ui(ui, |ui| {
-            if index > 0 && ui.selectable_label(varied.is_none(), "none").clicked() {
-                *varied = None;
-            }
-            for (path, field) in known {
-                if ui.selectable_label(*path == chosen, path).clicked() {
-                    *varied = Some(Varied::new(path, field));
-                }
-            }
-        });
-    menu.response.accessible_name(format!("Parameter {name}"));
+        .map_or_else(String::new, |varied| varied.path.clone());
+    let offers = none.into_iter().chain(paths);
+    let name = format!("Parameter {name}");
+    if let (Some(path), _) = menu_ui(ui, &name, (&now, 190.0), Some(&chosen), offers) {
+        let found = known.iter().find(|(known, _)| *known == path);
+        *varied = found.map(|(path, field)| Varied::new(path, field));
+    }
     let Some(varied) = varied else { return };
     let Some((_, field)) = known.iter().find(|(path, _)| *path == varied.path) else {
         return;
@@ -331,24 +334,23 @@ fn varied_ui(
         ui.label(theme::weak("every value"));
         return;
     }
-    let [low, high] = field.hard;
+    let ([low, high], path) = (field.hard, &varied.path);
     let speed = (field.soft[1] - field.soft[0]) / 300.0;
     for (end, name) in varied.ends.iter_mut().zip(["from", "to"]) {
         ui.label(theme::weak(name));
-        let whole = !field.value_type.is_continuous();
-        let drag = egui::DragValue::new(end)
-            .range(low..=high)
-            .speed(speed)
-            .max_decimals(if whole { 0 } else { 3 });
-        ui.add(drag)
-            .accessible_name(format!("{name} of {}", varied.path));
+        number_ui(
+            ui,
+            &format!("{name} of {path}"),
+            end,
+            low..=high,
+            (speed, ""),
+        );
+        if !field.value_type.is_continuous() {
+            *end = end.round();
+        }
     }
-    let steps = egui::DragValue::new(&mut varied.steps)
-        .range(2..=MAX_STEPS)
-        .suffix(" steps")
-        .speed(0.05);
-    ui.add(steps)
-        .accessible_name(format!("Steps of {}", varied.path));
+    let (steps, name) = (&mut varied.steps, format!("Steps of {path}"));
+    number_ui(ui, &name, steps, 2..=MAX_STEPS, (0.05, " steps"));
 }
 
 impl Panel for SweepPanel {
@@ -358,10 +360,7 @@ impl Panel for SweepPanel {
         }
         let mut is_open = true;
         let area = ui.ctx().content_rect();
-        egui::Window::new("Sweep")
-            .open(&mut is_open)
-            .collapsible(false)
-            .resizable(false)
+        window("Sweep", &mut is_open)
             .default_pos(area.left_top() + vec2(280.0, 72.0))
             .show(ui.ctx(), |ui| {
                 ui.set_width(WIDTH.min(area.width() - 48.0));
@@ -421,28 +420,21 @@ fn sheet_ui(ui: &mut Ui, drawn: &Drawn, state: &State, commands: &Commands, heig
 fn cell_ui(ui: &mut Ui, cell: &DrawnCell, size: egui::Vec2) -> egui::Response {
     ui.vertical(|ui| {
         let (rect, response) = ui.allocate_exact_size(size, Sense::click());
-        match &cell.picture {
-            Some(Ok(texture)) => egui::Image::from_texture((texture.id(), size))
-                .corner_radius(4.0)
-                .paint_at(ui, rect),
-            Some(Err(_)) | None => drop(ui.painter().rect_filled(rect, 4.0, theme::well())),
-        }
+        let picture = cell.picture.as_ref();
+        picture_ui(ui, rect, picture.and_then(|picture| picture.as_ref().ok()));
         if response.hovered() || response.has_focus() {
+            let edge = (2.0, theme::accent());
             ui.painter()
-                .rect_stroke(rect, 4.0, (2.0, theme::accent()), egui::StrokeKind::Inside);
+                .rect_stroke(rect, 4.0, edge, egui::StrokeKind::Inside);
             ui.set_cursor_icon(egui::CursorIcon::PointingHand);
         }
-        ui.add_sized(
-            [size.x, 14.0],
-            egui::Label::new(RichText::new(&cell.caption).size(11.0).color(theme::text()))
-                .truncate(),
-        );
-        response.widget_info(|| {
-            egui::WidgetInfo::labeled(egui::Role::Button, true, format!("Take {}", cell.caption))
-        });
-        match &cell.picture {
+        let caption = RichText::new(&cell.caption).size(11.0).color(theme::text());
+        ui.add_sized([size.x, 14.0], egui::Label::new(caption).truncate());
+        let name = format!("Take {}", cell.caption);
+        describe(&response, egui::Role::Button, name.as_str());
+        match picture {
             Some(Err(error)) => response.on_hover_text(error),
-            _ => response.on_hover_text(format!("Take {}", cell.caption)),
+            _ => response.on_hover_text(name),
         }
     })
     .inner

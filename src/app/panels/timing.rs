@@ -1,8 +1,10 @@
 //! The timing panel: the newest frames as a plot, and the median and spread of the frame and of its
 //! passes.
 
-use eframe::egui::{self, Color32, RichText, Sense, Ui, vec2};
-use egui_plot::{Bar, BarChart, HLine, LineStyle, Plot};
+use eframe::egui::{self, Color32, RichText, Ui, vec2};
+use egui_plot::{Bar, BarChart, HLine, LineStyle};
+
+use super::trade::plot::still_plot;
 
 use crate::{
     app::{
@@ -12,8 +14,8 @@ use crate::{
         },
         shell::{action::Action, command::Commands, state::State, ui_frames::UiFrames},
         widgets::{
-            icons::{Icon, icon_button},
-            panel::Panel,
+            icons::{Icon, icon_button, swatch},
+            panel::{Panel, at_right},
             text::short,
             theme,
         },
@@ -75,14 +77,13 @@ fn header_ui(ui: &mut Ui, state: &State, commands: &Commands) {
         ui.label(theme::heading("Timing"));
         let (text, hint) = time_line(Some(&state.picture.screen));
         ui.label(theme::weak(text)).on_hover_text(hint);
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+        at_right(ui, |ui| {
             if icon_button(ui, Icon::Cross, "Close timing").clicked() {
                 commands.perform(Action::Timing);
             }
             for (occasion, name) in OCCASIONS {
-                ui.label(theme::weak(name).size(11.0));
-                let (rect, _) = ui.allocate_exact_size(vec2(10.0, 10.0), Sense::hover());
-                ui.painter().rect_filled(rect, 2.0, color(occasion));
+                ui.label(theme::small(name));
+                swatch(ui, color(occasion));
             }
         });
     });
@@ -101,39 +102,20 @@ fn plot_ui(ui: &mut Ui, timings: &Timings) {
     let top = top_ms(&frames);
     let charts = OCCASIONS.map(|(occasion, name)| {
         let color = color(occasion);
-        let of = frames
-            .iter()
-            .enumerate()
-            .filter(|(_, (_, other))| *other == occasion);
-        let bars = of
-            .map(|(i, (ms, _))| {
-                Bar::new(i as f64, ms.min(top))
-                    .width(0.9)
-                    .fill(color)
-                    .stroke((0.0, color))
-            })
-            .collect();
-        BarChart::new(name, bars).allow_hover(false)
+        let bars = frames.iter().enumerate();
+        let bars = bars.filter(|(_, (_, other))| *other == occasion);
+        let bars = bars.map(|(i, (ms, _))| {
+            let bar = Bar::new(i as f64, ms.min(top)).width(0.9);
+            bar.fill(color).stroke((0.0, color))
+        });
+        BarChart::new(name, bars.collect()).allow_hover(false)
     });
     let settled = match timings.cost() {
         Cost::Settled(summary) => Some(summary.frame.median),
         _ => None,
     };
     let count = frames.len();
-    let response = Plot::new("timing plot")
-        .allow_drag(false)
-        .allow_zoom(false)
-        .allow_scroll(false)
-        .allow_boxed_zoom(false)
-        .allow_axis_zoom_drag(false)
-        .allow_double_click_reset(false)
-        .show_background(false)
-        .show_x(false)
-        .show_y(false)
-        .grid_color(theme::line())
-        .grid_fade(0.0)
-        .sense(Sense::hover())
-        .label_formatter(|_| None)
+    let response = still_plot("timing plot")
         .x_axis_formatter(|_, _| String::new())
         .y_axis_formatter(|mark, _| short(mark.value))
         .y_axis_label(RichText::new("milliseconds").size(11.0))
@@ -203,28 +185,17 @@ fn table_ui(ui: &mut Ui, state: &State) {
                 .spacing([14.0, 3.0])
                 .show(ui, |ui| {
                     for title in ["", "median", "p5 – p95", "of frame"] {
-                        ui.label(theme::weak(title).size(11.0));
+                        ui.label(theme::small(title));
                     }
                     ui.end_row();
                     for (name, spread, color) in rows(summary) {
                         ui.label(RichText::new(&name).color(color));
-                        ui.label(
-                            RichText::new(format!("{:.3}", spread.median))
-                                .monospace()
-                                .color(color),
-                        );
-                        ui.label(
-                            RichText::new(format!("{:.3} – {:.3}", spread.p5, spread.p95))
-                                .monospace()
-                                .color(theme::text_weak()),
-                        );
-                        let percent =
-                            100.0 * spread.median / summary.frame.median.max(f64::MIN_POSITIVE);
-                        ui.label(
-                            RichText::new(format!("{percent:.0} %"))
-                                .monospace()
-                                .color(color),
-                        );
+                        let cell = |text: String| RichText::new(text).monospace().color(color);
+                        ui.label(cell(format!("{:.3}", spread.median)));
+                        let range = format!("{:.3} – {:.3}", spread.p5, spread.p95);
+                        ui.label(cell(range).color(theme::text_weak()));
+                        let whole = summary.frame.median.max(f64::MIN_POSITIVE);
+                        ui.label(cell(format!("{:.0} %", 100.0 * spread.median / whole)));
                         ui.end_row();
                     }
                 });

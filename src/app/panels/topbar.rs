@@ -19,8 +19,9 @@ use crate::app::{
     trade::pace::about,
     widgets::{
         fields::dot,
+        form::words_ui,
         icons::{Icon, icon_button},
-        panel::Panel,
+        panel::{Panel, at_right, entry},
         theme::{self, ThemeChoice},
     },
 };
@@ -39,87 +40,60 @@ const PHONE: f32 = 600.0;
 const TIME_WIDTH: f32 = 104.0;
 const ERROR_WIDTH: f32 = 96.0;
 
-/// Menus with their entries; none is a separator.
-const MENUS: [(&str, &[Option<Action>]); 4] = [
-    (
-        "File",
-        &[
-            Some(Action::Open),
-            Some(Action::OpenWithScene),
-            None,
-            Some(Action::Save),
-            Some(Action::SaveAs),
-            Some(Action::Export),
-            Some(Action::Film),
-            None,
-            Some(Action::CopyPreset),
-            Some(Action::PastePreset),
-            Some(Action::CopyLink),
-            Some(Action::ExportAll),
-            None,
-            Some(Action::Quit),
-        ],
-    ),
-    (
-        "Edit",
-        &[
-            Some(Action::Undo),
-            Some(Action::Redo),
-            None,
-            Some(Action::AddEffect),
-            Some(Action::NewEffect),
-            Some(Action::Randomize),
-            Some(Action::RandomizeWindow),
-            Some(Action::Sweep),
-        ],
-    ),
-    (
-        "Time",
-        &[
-            Some(Action::Play),
-            Some(Action::StepBack),
-            Some(Action::StepForward),
-            Some(Action::Rewind),
-            None,
-            Some(Action::RemoveKey),
-        ],
-    ),
-    (
-        "View",
-        &[
-            Some(Action::Frame),
-            Some(Action::Front),
-            Some(Action::Side),
-            Some(Action::Top),
-            Some(Action::Orthographic),
-            Some(Action::AddBookmark),
-            Some(Action::NextBookmark),
-            None,
-            Some(Action::Verify),
-            Some(Action::Overlays),
-            Some(Action::NextPixel),
-            Some(Action::PreviousPixel),
-            Some(Action::Handles),
-            Some(Action::BoundingBox),
-            Some(Action::Axes),
-            Some(Action::Grid),
-            Some(Action::Compare),
-            Some(Action::FlipAb),
-            None,
-            Some(Action::Panels),
-            Some(Action::Timeline),
-            Some(Action::Trade),
-            Some(Action::Timing),
-            Some(Action::Log),
-            None,
-            Some(Action::Extremes),
-            Some(Action::Review),
-            Some(Action::Palette),
-            Some(Action::CheatSheet),
-            Some(Action::Settings),
-        ],
-    ),
-];
+/// Menus with the groups of their entries.
+const MENUS: [(&str, &[&[Action]]); 4] = {
+    use Action::*;
+    [
+        (
+            "File",
+            &[
+                &[Open, OpenWithScene],
+                &[Save, SaveAs, Export, Film],
+                &[CopyPreset, PastePreset, CopyLink, ExportAll],
+                &[Quit],
+            ],
+        ),
+        (
+            "Edit",
+            &[
+                &[Undo, Redo],
+                &[AddEffect, NewEffect, Randomize, RandomizeWindow, Sweep],
+            ],
+        ),
+        (
+            "Time",
+            &[&[Play, StepBack, StepForward, Rewind], &[RemoveKey]],
+        ),
+        (
+            "View",
+            &[
+                &[
+                    Frame,
+                    Front,
+                    Side,
+                    Top,
+                    Orthographic,
+                    AddBookmark,
+                    NextBookmark,
+                ],
+                &[
+                    Verify,
+                    Overlays,
+                    NextPixel,
+                    PreviousPixel,
+                    Handles,
+                    BoundingBox,
+                    Axes,
+                    Grid,
+                    Compare,
+                    FlipAb,
+                ],
+                &[Panels, Timeline, Trade, Timing, Log],
+                &[Extremes, Review, Palette, CheatSheet, Settings],
+            ],
+        ),
+    ]
+};
 
 impl Panel for TopBar {
     fn ui(&mut self, ui: &mut Ui, state: &State, commands: &Commands) {
@@ -127,7 +101,7 @@ impl Panel for TopBar {
             ui.set_min_height(28.0);
             menus_ui(ui, state, commands);
             ui.add_space(theme::HALF);
-            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            at_right(ui, |ui| {
                 ui.spacing_mut().item_spacing.x = 6.0;
                 adapter_ui(ui, state, ui.ctx().content_rect().width() < NARROW);
                 ui.separator();
@@ -146,18 +120,20 @@ impl Panel for TopBar {
 
 fn menus_ui(ui: &mut Ui, state: &State, commands: &Commands) {
     ui.spacing_mut().item_spacing.x = 2.0;
-    for (title, actions) in MENUS {
-        let chosen = ui.menu_button(title, |ui| {
-            let chosen = menu_ui(ui, actions, state, commands);
+    for (title, groups) in MENUS {
+        ui.menu_button(title, |ui| {
+            ui.set_min_width(220.0);
+            for (index, actions) in groups.iter().enumerate() {
+                if index > 0 {
+                    ui.separator();
+                }
+                let actions = actions.iter().filter(|action| action.is_here());
+                actions.for_each(|action| entry_ui(ui, *action, state, commands));
+            }
             if title == "View" {
                 looks_ui(ui, state.settings.theme, commands);
             }
-            chosen
         });
-        let chosen = chosen.inner.flatten();
-        if let Some(action) = chosen {
-            commands.perform(action);
-        }
     }
     ui.add_space(theme::HALF);
     let can_undo = state.history.can_undo();
@@ -166,46 +142,23 @@ fn menus_ui(ui: &mut Ui, state: &State, commands: &Commands) {
         (Icon::Right, Action::NextPreset, true),
         (Icon::Reset, Action::Undo, can_undo),
     ] {
-        let name = action.hint();
-        if ui
-            .add_enabled_ui(is_enabled, |ui| icon_button(ui, icon, &name))
-            .inner
-            .clicked()
-        {
+        let button = ui.add_enabled_ui(is_enabled, |ui| icon_button(ui, icon, &action.hint()));
+        if button.inner.clicked() {
             commands.perform(action);
         }
     }
 }
 
-/// The entries of one menu.
-fn menu_ui(
-    ui: &mut Ui,
-    actions: &[Option<Action>],
-    state: &State,
-    commands: &Commands,
-) -> Option<Action> {
-    let mut chosen = None;
-    ui.set_min_width(220.0);
-    for action in actions {
-        let Some(action) = action else {
-            ui.separator();
-            continue;
-        };
-        if !action.is_here() {
-            continue;
-        }
-        let button = egui::Button::new(action.label())
-            .shortcut_text(action.shortcut_text())
-            .min_size(vec2(208.0, theme::ROW));
-        if ui.add(button).accessible_name(action.label()).clicked() {
-            chosen = Some(*action);
-            ui.close();
-        }
-        if *action == Action::Open {
-            ui.menu_button("Open recent", |ui| recents_ui(ui, state, commands));
-        }
+/// The entry of an action in a menu.
+fn entry_ui(ui: &mut Ui, action: Action, state: &State, commands: &Commands) {
+    let button = entry(action.label(), 208.0).shortcut_text(action.shortcut_text());
+    if ui.add(button).accessible_name(action.label()).clicked() {
+        commands.perform(action);
+        ui.close();
     }
-    chosen
+    if action == Action::Open {
+        ui.menu_button("Open recent", |ui| recents_ui(ui, state, commands));
+    }
 }
 
 /// Recent files, newest first. Those that are gone are greyed.
@@ -254,20 +207,15 @@ fn recents_ui(ui: &mut Ui, state: &State, commands: &Commands) {
 /// window.
 fn looks_ui(ui: &mut Ui, chosen: ThemeChoice, commands: &Commands) {
     ui.menu_button("Theme and size", |ui| {
-        for choice in ThemeChoice::ALL {
-            if ui
-                .selectable_label(chosen == choice, choice.label())
-                .clicked()
-            {
-                commands.send(Command::Settings(SettingsCommand::Theme(choice)));
-                ui.close();
-            }
+        let themes = ThemeChoice::ALL.map(|choice| (choice, choice.label(), ""));
+        let mut theme = chosen;
+        if words_ui(ui, "", &mut theme, themes) {
+            commands.send(Command::Settings(SettingsCommand::Theme(theme)));
+            ui.close();
         }
         ui.separator();
         for action in [Action::ScaleUp, Action::ScaleDown, Action::ScaleReset] {
-            let button = egui::Button::new(action.label())
-                .shortcut_text(action.shortcut_text())
-                .min_size(vec2(240.0, theme::ROW));
+            let button = entry(action.label(), 240.0).shortcut_text(action.shortcut_text());
             if ui.add(button).accessible_name(action.label()).clicked() {
                 commands.perform(action);
                 ui.close();
@@ -280,9 +228,7 @@ fn looks_ui(ui: &mut Ui, chosen: ThemeChoice, commands: &Commands) {
 fn name_ui(ui: &mut Ui, state: &State) {
     ui.spacing_mut().item_spacing.x = 6.0;
     let open = &state.session.preset_file;
-    let name = RichText::new(open.title())
-        .color(theme::text_strong())
-        .strong();
+    let name = theme::strong(open.title()).strong();
     let file = match (&open.path, open.read_only) {
         (Some(path), _) => path.display().to_string(),
         (None, true) => format!("{}, built in. Save asks for a file name.", open.id),
@@ -290,12 +236,10 @@ fn name_ui(ui: &mut Ui, state: &State) {
     };
     let width = ui.available_width();
     let is_modified = state.session.is_modified();
-    let rest = if !is_modified {
-        0.0
-    } else if width > 150.0 {
-        70.0
-    } else {
-        16.0
+    let rest = match is_modified {
+        false => 0.0,
+        true if width > 150.0 => 70.0,
+        true => 16.0,
     };
     ui.scope(|ui| {
         ui.set_max_width((width - rest).max(0.0));
@@ -315,18 +259,12 @@ fn adapter_ui(ui: &mut Ui, state: &State, is_narrow: bool) {
     let gpu = &state.picture.screen.gpu;
     let summary = &gpu.summary;
     let name = summary.name.split('(').next().unwrap_or_default().trim();
-    let text = if summary.software {
-        format!("{name} · software")
-    } else {
-        name.to_owned()
-    };
-    let ink = if summary.software {
-        theme::amber()
-    } else {
-        theme::text()
+    let (text, ink, light) = match summary.software {
+        true => (format!("{name} · software"), theme::amber(), theme::amber()),
+        false => (name.to_owned(), theme::text(), theme::green()),
     };
     let hint = |ui: &mut Ui| {
-        ui.label(RichText::new(&summary.name).color(theme::text_strong()));
+        ui.label(theme::strong(&summary.name));
         let driver = match summary.driver.as_str() {
             "" => "driver unknown",
             driver => driver,
@@ -342,18 +280,7 @@ fn adapter_ui(ui: &mut Ui, state: &State, is_narrow: bool) {
         ui.add(egui::Label::new(RichText::new(text).color(ink)).truncate())
             .on_hover_ui(hint);
     }
-    let place = ui
-        .scope(|ui| {
-            dot(
-                ui,
-                if summary.software {
-                    theme::amber()
-                } else {
-                    theme::green()
-                },
-            )
-        })
-        .response;
+    let place = ui.scope(|ui| dot(ui, light)).response;
     place.on_hover_ui(hint);
 }
 
@@ -368,17 +295,11 @@ fn cost_ui(ui: &mut Ui, state: &State, commands: &Commands) {
         // How far it is stands where the error will.
         Some(progress) => verifying_ui(ui, &progress, commands),
         None => {
-            let verify = ui.add_enabled(
-                state.picture.screen.requested().is_some(),
-                egui::Button::new("Verify"),
-            );
-            if verify
-                .on_hover_text(format!(
-                    "Compare every pixel with the exact CPU oracle ({})",
-                    Action::Verify.shortcut_text()
-                ))
-                .clicked()
-            {
+            let is_drawn = state.picture.screen.requested().is_some();
+            let keys = Action::Verify.shortcut_text();
+            let about = format!("Compare every pixel with the exact CPU oracle ({keys})");
+            let verify = ui.add_enabled(is_drawn, egui::Button::new("Verify"));
+            if verify.on_hover_text(about).clicked() {
                 commands.perform(Action::Verify);
             }
             let error = RichText::new(error).color(color);
@@ -387,7 +308,7 @@ fn cost_ui(ui: &mut Ui, state: &State, commands: &Commands) {
     }
     ui.label(theme::weak("·"));
     let (time, hint) = time_line(Some(&state.picture.screen));
-    let time = RichText::new(time).color(theme::text_strong());
+    let time = theme::strong(time);
     number_ui(ui, TIME_WIDTH, Align::Max, time, hint);
     pins_ui(ui, &state.session.preset().accuracy.pins.words());
 }

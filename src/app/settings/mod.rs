@@ -151,8 +151,6 @@ pub struct OpenPanels {
     pub axes: bool,
     pub grid: bool,
     #[serde(skip)]
-    pub cheat_sheet: bool,
-    #[serde(skip)]
     pub settings: bool,
 }
 
@@ -169,7 +167,6 @@ impl Default for OpenPanels {
             bounding_box: false,
             axes: false,
             grid: false,
-            cheat_sheet: false,
             settings: false,
         }
     }

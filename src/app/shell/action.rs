@@ -364,6 +364,7 @@ impl Action {
                 | Self::AddEffect
                 | Self::NewEffect
                 | Self::CheatSheet
+                | Self::Settings
         )
     }
 

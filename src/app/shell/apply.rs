@@ -213,7 +213,6 @@ fn toggle(state: &mut State, panels: &mut Panels, which: Toggle) {
         Toggle::BoundingBox => open.bounding_box = !open.bounding_box,
         Toggle::Axes => open.axes = !open.axes,
         Toggle::Grid => open.grid = !open.grid,
-        Toggle::CheatSheet => open.cheat_sheet = !open.cheat_sheet,
         Toggle::Settings => open.settings = !open.settings,
         Toggle::Palette => panels
             .palette

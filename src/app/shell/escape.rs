@@ -22,7 +22,6 @@ enum Closing {
     Extremes,
     Review,
     Settings,
-    CheatSheet,
     Compare,
     Trade,
     Timing,
@@ -57,7 +56,6 @@ pub fn escape(
             | Closing::Extremes
             | Closing::Review
             | Closing::Settings
-            | Closing::CheatSheet
     );
     if was_typing && !is_window {
         return;
@@ -74,7 +72,6 @@ pub fn escape(
         Closing::Extremes => commands.send(Command::Toggle(Toggle::Extremes)),
         Closing::Review => commands.send(Command::Toggle(Toggle::Review)),
         Closing::Settings => commands.send(Command::Toggle(Toggle::Settings)),
-        Closing::CheatSheet => commands.send(Command::Toggle(Toggle::CheatSheet)),
         Closing::Compare => panels.viewport.compare.close(),
         Closing::Trade => commands.send(Command::Toggle(Toggle::Trade)),
         Closing::Timing => commands.send(Command::Toggle(Toggle::Timing)),
@@ -92,7 +89,6 @@ fn innermost(state: &State, panels: &Panels) -> Option<Closing> {
         (panels.extremes.is_open(), Closing::Extremes),
         (panels.review.is_open(), Closing::Review),
         (state.open.settings, Closing::Settings),
-        (state.open.cheat_sheet, Closing::CheatSheet),
         (state.picture.marker.is_some(), Closing::Marker),
         (!state.measured_points().is_empty(), Closing::Measuring),
         (panels.viewport.compare.is_open(), Closing::Compare),

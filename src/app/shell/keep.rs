@@ -20,7 +20,6 @@ impl App {
             ..
         } = &mut self.state;
         settings.open = OpenPanels {
-            cheat_sheet: false,
             settings: false,
             ..self.fold.kept(*open)
         };

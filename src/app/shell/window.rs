@@ -590,7 +590,7 @@ impl eframe::App for App {
             self.apply(&ctx);
         }
         let is_awaited =
-            self.panels.takes_text() || (self.state.open.cheat_sheet && !self.panels.has_dialog());
+            self.panels.takes_text() || (self.state.open.settings && !self.panels.has_dialog());
         self.typing.follow(&ctx, is_awaited, now_s);
         self.state.clipboard.hovered_row = None;
         self.play(&ctx);
@@ -602,7 +602,6 @@ impl eframe::App for App {
         }
         self.panels_ui(ui);
         self.panel_ui(ui, |panels| &mut panels.dialogs);
-        self.panel_ui(ui, |panels| &mut panels.cheat_sheet);
         self.panel_ui(ui, |panels| &mut panels.palette);
         self.panel_ui(ui, |panels| &mut panels.naming);
         self.panel_ui(ui, |panels| &mut panels.browser.effects);

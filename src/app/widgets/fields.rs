@@ -4,10 +4,11 @@
 use std::sync::Arc;
 
 use eframe::egui::{
-    self, Align, Color32, Rect, RichText, Sense, Slider, SliderClamping, Ui, UiBuilder, pos2, vec2,
+    self, Align, Color32, Rect, Response, Sense, Slider, SliderClamping, Ui, UiBuilder, pos2, vec2,
 };
 
 use super::{
+    form::menu_ui,
     icons::{Icon, icon_button, key_button},
     numbers::NumberField,
     reveal, theme,
@@ -158,21 +159,13 @@ const NUMBER_WIDTH: f32 = 66.0;
 pub fn row_ui(ui: &mut Ui, commands: &Commands, row: &Row, value: &Value) {
     let width = ui.available_width();
     let (rect, _) = ui.allocate_exact_size(vec2(width, theme::ROW), Sense::hover());
-    let split = rect.left() + (width * 0.34).clamp(72.0, 140.0);
-    let label_rect = Rect::from_min_max(
-        pos2(rect.left() + BAR_WIDTH + theme::HALF, rect.top()),
-        pos2(split, rect.bottom()),
-    );
-    let buttons = RESET_WIDTH + if row.keying.is_some() { KEY_WIDTH } else { 0.0 };
-    let control_rect = Rect::from_min_max(
-        pos2(split + theme::HALF, rect.top()),
-        pos2(rect.right() - buttons, rect.bottom()),
-    );
-    let key_rect = Rect::from_min_max(
-        pos2(rect.right() - buttons, rect.top()),
-        pos2(rect.right() - RESET_WIDTH, rect.bottom()),
-    );
-    let reset_rect = Rect::from_min_max(pos2(rect.right() - RESET_WIDTH, rect.top()), rect.max);
+    let (label_rect, rest) =
+        rect.split_left_right_at_x(rect.left() + (width * 0.34).clamp(72.0, 140.0));
+    let label_rect = label_rect.with_min_x(rect.left() + BAR_WIDTH + theme::HALF);
+    let (rest, reset_rect) = rest.split_left_right_at_x(rect.right() - RESET_WIDTH);
+    let key_width = row.keying.map_or(0.0, |_| KEY_WIDTH);
+    let (control_rect, key_rect) = rest.split_left_right_at_x(rest.right() - key_width);
+    let control_rect = control_rect.with_min_x(control_rect.left() + theme::HALF);
     if row.modified {
         let bar = Rect::from_min_size(
             rect.min + vec2(0.0, 4.0),
@@ -189,7 +182,11 @@ pub fn row_ui(ui: &mut Ui, commands: &Commands, row: &Row, value: &Value) {
             .layout(layout),
     );
     control.spacing_mut().item_spacing.x = 6.0;
-    let changed = control_ui(&mut control, commands, row, value);
+    let shown = control_ui(&mut control, commands, row, value);
+    let changed = shown.and_then(|(response, changed)| {
+        reveal::focus(&row.path, &response);
+        changed
+    });
     if row.modified {
         let mut reset = ui.new_child(
             UiBuilder::new()
@@ -264,20 +261,13 @@ fn label_ui(ui: &mut Ui, row: &Row, value: &Value, rect: Rect) -> Option<RowComm
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, &row.label));
     response.context_menu(|ui| {
         let group = row.path.split('.').next().unwrap_or_default();
+        let path = || row.path.clone();
+        let all = format!("Reset all of {group}");
         for (text, chosen) in [
-            ("Reset".to_owned(), RowCommand::Reset(row.path.clone())),
-            (
-                format!("Reset all of {group}"),
-                RowCommand::ResetGroup(group.into()),
-            ),
-            (
-                "Copy value".to_owned(),
-                RowCommand::Copy(row.written(value)),
-            ),
-            (
-                "Paste value".to_owned(),
-                RowCommand::Paste(row.path.clone()),
-            ),
+            ("Reset", RowCommand::Reset(path())),
+            (all.as_str(), RowCommand::ResetGroup(group.into())),
+            ("Copy value", RowCommand::Copy(row.written(value))),
+            ("Paste value", RowCommand::Paste(path())),
         ] {
             if ui.button(text).clicked() {
                 command = Some(chosen);
@@ -286,7 +276,7 @@ fn label_ui(ui: &mut Ui, row: &Row, value: &Value, rect: Rect) -> Option<RowComm
         }
     });
     response.on_hover_ui(|ui| {
-        ui.label(RichText::new(&row.param.doc).color(theme::text_strong()));
+        ui.label(theme::strong(&row.param.doc));
         ui.label(theme::weak(format!(
             "{}   {}{}",
             row.path,
@@ -298,26 +288,35 @@ fn label_ui(ui: &mut Ui, row: &Row, value: &Value, rect: Rect) -> Option<RowComm
 }
 
 fn spaced(unit: &str) -> String {
-    if unit.is_empty() {
-        String::new()
-    } else {
-        format!(" {unit}")
+    match unit {
+        "" => String::new(),
+        unit => format!(" {unit}"),
     }
 }
 
-fn control_ui(ui: &mut Ui, commands: &Commands, row: &Row, value: &Value) -> Option<Value> {
-    match (&row.param.value_type, value) {
+/// What a control shows, and the value that it was given.
+type Shown = (Response, Option<Value>);
+
+fn control_ui(ui: &mut Ui, commands: &Commands, row: &Row, value: &Value) -> Option<Shown> {
+    Some(match (&row.param.value_type, value) {
         (_, Value::Bool(on)) => {
             let mut on = *on;
             let shown = ui.checkbox(&mut on, "").accessible_name(&row.path);
-            reveal::focus(&row.path, &shown);
-            shown.changed().then_some(Value::Bool(on))
+            let changed = shown.changed().then_some(Value::Bool(on));
+            (shown, changed)
         }
-        (ValueType::Choice(words), Value::Choice(index)) => word_ui(ui, row, words, *index),
+        (ValueType::Choice(words), Value::Choice(index)) => {
+            let now = words.get(*index).map_or("", String::as_str);
+            let offers = words.iter().enumerate();
+            let offers = offers.map(|(index, word)| (index, word.as_str(), ""));
+            let now = (now, ui.available_width());
+            let (taken, menu) = menu_ui(ui, &row.path, now, Some(index), offers);
+            (menu, taken.map(Value::Choice))
+        }
         (ValueType::Color, Value::Numbers(components)) => color_ui(ui, commands, row, components),
         (_, Value::Numbers(components)) => match components[..] {
             [number] => number_ui(ui, commands, row, number),
-            _ => components_ui(ui, commands, row, components),
+            _ => components_ui(ui, commands, row, components)?,
         },
         (ValueType::Text { max_chars }, Value::Text(text)) => {
             let mut text = text.clone();
@@ -325,54 +324,32 @@ fn control_ui(ui: &mut Ui, commands: &Commands, row: &Row, value: &Value) -> Opt
                 .char_limit(*max_chars)
                 .desired_width(ui.available_width());
             let shown = ui.add(edit).accessible_name(&row.path);
-            reveal::focus(&row.path, &shown);
-            shown.changed().then_some(Value::Text(text))
+            let changed = shown.changed().then_some(Value::Text(text));
+            (shown, changed)
         }
-        _ => None, // Lists of texts are edited in the file.
-    }
+        _ => return None, // Lists of texts are edited in the file.
+    })
 }
 
-fn word_ui(ui: &mut Ui, row: &Row, words: &[String], chosen: usize) -> Option<Value> {
-    let mut now = chosen;
-    let shown = egui::ComboBox::from_id_salt(&row.path)
-        .selected_text(words.get(chosen).map_or("", String::as_str))
-        .width(ui.available_width())
-        .show_ui(ui, |ui| {
-            for (index, word) in words.iter().enumerate() {
-                ui.selectable_value(&mut now, index, word);
-            }
-        })
-        .response
-        .accessible_name(&row.path);
-    reveal::focus(&row.path, &shown);
-    (now != chosen).then_some(Value::Choice(now))
-}
-
-fn color_ui(ui: &mut Ui, commands: &Commands, row: &Row, components: &[f64]) -> Option<Value> {
+fn color_ui(ui: &mut Ui, commands: &Commands, row: &Row, components: &[f64]) -> Shown {
     let mut color: [f32; 4] = std::array::from_fn(|i| components[i] as f32);
     ui.spacing_mut().interact_size.x = 44.0;
     let response = ui
         .color_edit_button_rgba_unmultiplied(&mut color)
         .accessible_name(&row.path)
         .on_hover_text("Choose the color");
-    reveal::focus(&row.path, &response);
-    if let Some(typed) = hex_ui(ui, commands, row, components) {
-        return Some(typed);
-    }
+    let typed = hex_ui(ui, commands, row, components);
     // The picker's arithmetic may leave the unit range by a bit.
-    response.changed().then(|| {
-        Value::Numbers(
-            color
-                .map(|c| {
-                    f64::from(if c.is_finite() {
-                        c.clamp(0.0, 1.0)
-                    } else {
-                        0.0
-                    })
-                })
-                .to_vec(),
-        )
-    })
+    let picked = |c: f32| {
+        f64::from(if c.is_finite() {
+            c.clamp(0.0, 1.0)
+        } else {
+            0.0
+        })
+    };
+    let picked = || Value::Numbers(color.map(picked).to_vec());
+    let changed = typed.or_else(|| response.changed().then(picked));
+    (response, changed)
 }
 
 /// The color as it is written for screens, which can be typed.
@@ -407,21 +384,17 @@ fn hex_ui(ui: &mut Ui, commands: &Commands, row: &Row, components: &[f64]) -> Op
 }
 
 /// One number: a slider over the soft range, and a field that takes the hard one.
-fn number_ui(ui: &mut Ui, commands: &Commands, row: &Row, value: f64) -> Option<Value> {
+fn number_ui(ui: &mut Ui, commands: &Commands, row: &Row, value: f64) -> Shown {
     let ([low, high], whole, soft) = (row.param.hard, row.is_whole(), row.slider());
     let mut now = value;
     if let Some([from, to]) = soft {
         ui.spacing_mut().slider_width = (ui.available_width() - NUMBER_WIDTH - 6.0).max(24.0);
         now = slider_ui(ui, row, value, [from, to], whole);
     }
-    let speed = soft.map_or_else(
-        || value.abs().max(1.0) * 0.01,
-        |[from, to]| (to - from) / 300.0,
-    );
-    let width = if soft.is_some() {
-        NUMBER_WIDTH
-    } else {
-        ui.available_width().min(120.0)
+    let speed = speed_of(soft, value.abs().max(1.0));
+    let width = match soft {
+        Some(_) => NUMBER_WIDTH,
+        None => ui.available_width().min(120.0),
     };
     let unit = spaced(&row.param.unit);
     let speed = if whole { speed.max(0.05) } else { speed };
@@ -433,11 +406,19 @@ fn number_ui(ui: &mut Ui, commands: &Commands, row: &Row, value: f64) -> Option<
         unit: &unit,
     };
     let (response, said) = field.show(ui, width, &mut now);
-    reveal::focus(&row.path, &response);
-    response.accessible_name(format!("{} value", row.path));
+    let response = response.accessible_name(format!("{} value", row.path));
     say(commands, row, said);
     let now = if whole { now.round() } else { now };
-    (now != value && now.is_finite()).then(|| Value::number(now.clamp(low, high)))
+    let changed = now != value && now.is_finite();
+    (
+        response,
+        changed.then(|| Value::number(now.clamp(low, high))),
+    )
+}
+
+/// Change for each point of a drag: a part of the soft range, or of the value.
+fn speed_of(soft: Option<[f64; 2]>, value: f64) -> f64 {
+    soft.map_or(value * 0.01, |[from, to]| (to - from) / 300.0)
 }
 
 /// Says that a typed number was not taken as it was.
@@ -470,54 +451,45 @@ fn slider_ui(ui: &mut Ui, row: &Row, value: f64, [from, to]: [f64; 2], whole: bo
     let (mut now, fine) = (value, ui.input(|i| i.modifiers.shift));
     let rail = ui.spacing().slider_width;
     let set = |value: Option<f64>| {
-        if let Some(value) = value {
-            now = value;
-        }
+        now = value.unwrap_or(now);
         now
     };
     let mut slider = Slider::from_get_set(from..=to, set)
         .show_value(false)
+        .logarithmic(row.param.log)
         .clamping(SliderClamping::Edits);
-    slider = if whole { slider.step_by(1.0) } else { slider };
-    slider = if row.param.log {
-        slider
-            .logarithmic(true)
-            .smallest_positive(from.abs().max(1e-6))
-    } else {
-        slider
-    };
+    if whole {
+        slider = slider.step_by(1.0);
+    }
+    if row.param.log {
+        slider = slider.smallest_positive(from.abs().max(1e-6));
+    }
     let response = ui.add(slider).accessible_name(&row.path);
     if !(fine && response.dragged()) {
         return now;
     }
     let part = f64::from(response.drag_delta().x / rail.max(1.0)) * 0.1;
-    let moved = if row.param.log && value > 0.0 && from > 0.0 {
-        value * (to / from).powf(part)
-    } else {
-        value + (to - from) * part
+    let moved = match row.param.log && value > 0.0 && from > 0.0 {
+        true => value * (to / from).powf(part),
+        false => value + (to - from) * part,
     };
-    if whole {
-        value
-    } else {
-        moved.clamp(from.min(value), to.max(value))
+    match whole {
+        true => value,
+        false => moved.clamp(from.min(value), to.max(value)),
     }
 }
 
 /// Two or three numbers side by side.
-fn components_ui(ui: &mut Ui, commands: &Commands, row: &Row, components: &[f64]) -> Option<Value> {
+fn components_ui(ui: &mut Ui, commands: &Commands, row: &Row, components: &[f64]) -> Option<Shown> {
     let ([low, high], whole, soft) = (row.param.hard, row.is_whole(), row.slider());
-    let mut now = components.to_vec();
+    let (mut now, mut first) = (components.to_vec(), None);
     ui.spacing_mut().item_spacing.x = 4.0;
     let width =
         (ui.available_width() - 4.0 * (components.len() - 1) as f32) / components.len() as f32;
     for (component, name) in now.iter_mut().zip(row.param.value_type.component_names()) {
-        let speed = if whole {
-            1.0
-        } else {
-            soft.map_or_else(
-                || component.abs().max(0.5) * 0.01,
-                |[from, to]| (to - from) / 300.0,
-            )
+        let speed = match whole {
+            true => 1.0,
+            false => speed_of(soft, component.abs().max(0.5)),
         };
         let field = NumberField {
             range: [low, high],
@@ -527,20 +499,18 @@ fn components_ui(ui: &mut Ui, commands: &Commands, row: &Row, components: &[f64]
             unit: "",
         };
         let (response, said) = field.show(ui, width, component);
-        reveal::focus(&row.path, &response);
-        response
+        let response = response
             .accessible_name(format!("{}.{name}", row.path))
             .on_hover_text(*name);
+        first.get_or_insert(response);
         say(commands, row, said);
     }
     let changed = now != components && now.iter().all(|component| component.is_finite());
-    changed.then(|| {
-        Value::Numbers(
-            now.iter()
-                .map(|component| if whole { component.round() } else { *component })
-                .collect(),
-        )
-    })
+    if whole {
+        now.iter_mut()
+            .for_each(|component| *component = component.round());
+    }
+    Some((first?, changed.then_some(Value::Numbers(now))))
 }
 
 /// A dot of `color` in front of a line, for states.

@@ -1,8 +1,8 @@
 //! The icons of the lab, drawn with lines, so that they look the same with every font.
 
-use eframe::egui::{self, Color32, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, pos2, vec2};
+use eframe::egui::{self, Color32, Pos2, Rect, Response, Role, Sense, Shape, Stroke, Ui, vec2};
 
-use super::theme;
+use super::{panel::describe_chosen, theme};
 use crate::app::editing::key_id::Keying;
 
 /// What an icon shows.
@@ -41,6 +41,60 @@ pub enum Icon {
     Grip,
 }
 
+impl Icon {
+    /// The strokes in a square from 0 to 1, right and down, each after a `;`: `l` is a line through
+    /// points, `f` a filled convex polygon, `r` a filled rectangle by two corners, `o` dots of a
+    /// radius.
+    const fn strokes(self) -> &'static str {
+        match self {
+            Self::Eye => {
+                "l -.1 .5 .05 .35 .2 .22 .35 .13 .5 .1 .65 .13 .8 .22 .95 .35 1.1 .5; l -.1 .5 .05 \
+             .65 .2 .78 .35 .87 .5 .9 .65 .87 .8 .78 .95 .65 1.1 .5; o .17 .5 .5"
+            }
+            Self::EyeShut => {
+                "l -.1 .5 .05 .35 .2 .22 .35 .13 .5 .1 .65 .13 .8 .22 .95 .35 1.1 .5; l -.1 .5 .05 \
+             .65 .2 .78 .35 .87 .5 .9 .65 .87 .8 .78 .95 .65 1.1 .5; l 0 1 1 0"
+            }
+            Self::Up => "l 0 .7 .5 .25 1 .7",
+            Self::Down => "l 0 .3 .5 .75 1 .3",
+            Self::Left => "l .7 0 .25 .5 .7 1",
+            Self::Right => "l .3 0 .75 .5 .3 1",
+            Self::Reset => {
+                "l .42 .03 .62 .04 .81 .13 .94 .3 .98 .5 .94 .7 .81 .87 .62 .96 .42 .97 .22 .89 .08 \
+             .74 .02 .54; l .67 -.32 .42 .03 .77 .28"
+            }
+            Self::Cross => "l .1 .1 .9 .9; l .9 .1 .1 .9",
+            Self::Frame => "l .3 0 0 0 0 .3; l .7 0 1 0 1 .3; l .7 1 1 1 1 .7; l .3 1 0 1 0 .7",
+            Self::Dice => "l 0 0 1 0 1 1 0 1 0 0 1 0; o .1 .27 .27 .5 .5 .73 .73",
+            Self::Play => "f .12 -.05 1.05 .5 .12 1.05",
+            Self::Pause => "r .08 0 .38 1; r .62 0 .92 1",
+            Self::ToStart => "l .05 0 .05 1; f 1 0 .25 .5 1 1",
+            Self::StepBack => "l .95 .05 .95 .95; l .65 .05 .1 .5 .65 .95",
+            Self::StepForward => "l .05 .05 .05 .95; l .35 .05 .9 .5 .35 .95",
+            Self::Loop => {
+                "l -.1 .55 -.1 .2 1 .2; l .75 -.05 1.02 .2 .75 .45; l 1.1 .45 1.1 .8 0 .8; l .25 \
+             .55 -.02 .8 .25 1.05"
+            }
+            Self::More => "o .13 .5 .05 .5 .5 .5 .95",
+            Self::Star => {
+                "l .5 -.1 .65 .29 1.07 .31 .75 .58 .85 .99 .5 .76 .15 .99 .25 .58 -.07 .31 .35 .29 \
+             .5 -.1 .65 .29"
+            }
+            Self::StarFull => {
+                "l .5 -.1 .65 .29 1.07 .31 .75 .58 .85 .99 .5 .76 .15 .99 .25 .58 -.07 .31 .35 .29 \
+             .5 -.1 .65 .29; f .65 .29 .75 .58 .5 .76 .25 .58 .35 .29; f .35 .29 .5 -.1 .65 \
+             .29; f .65 .29 1.07 .31 .75 .58; f .75 .58 .85 .99 .5 .76; f .5 .76 .15 .99 .25 \
+             .58; f .25 .58 -.07 .31 .35 .29"
+            }
+            Self::Grid => "r 0 0 .42 .42; r .58 0 1 .42; r 0 .58 .42 1; r .58 .58 1 1",
+            Self::List => {
+                "r 0 0 .2 .2; r .34 0 1 .2; r 0 .4 .2 .6; r .34 .4 1 .6; r 0 .8 .2 1; r .34 .8 1 1"
+            }
+            Self::Grip => "o .1 .3 .05 .3 .5 .3 .95 .7 .05 .7 .5 .7 .95",
+        }
+    }
+}
+
 /// A square button without a frame; `name` is its tooltip and its accessible name.
 pub fn icon_button(ui: &mut Ui, icon: Icon, name: &str) -> Response {
     let response = bare_button(ui, icon, |ui, response| {
@@ -54,6 +108,14 @@ pub fn icon_button(ui: &mut Ui, icon: Icon, name: &str) -> Response {
     response.on_hover_text(name).on_disabled_hover_text(name)
 }
 
+/// The star of favorites; `name` says what is listed while it is on.
+pub fn star_toggle(ui: &mut Ui, is_on: &mut bool, name: &str) {
+    let icon = if *is_on { Icon::StarFull } else { Icon::Star };
+    *is_on ^= toggle_button(ui, icon, *is_on, name)
+        .on_hover_text("Favorites only")
+        .clicked();
+}
+
 /// A button that is on or off.
 pub fn toggle_button(ui: &mut Ui, icon: Icon, on: bool, name: &str) -> Response {
     let response = bare_button(ui, icon, |_, _| {
@@ -63,7 +125,7 @@ pub fn toggle_button(ui: &mut Ui, icon: Icon, on: bool, name: &str) -> Response 
             theme::text_weak()
         }
     });
-    response.widget_info(|| egui::WidgetInfo::selected(egui::Role::CheckBox, true, on, name));
+    describe_chosen(&response, Role::CheckBox, on, name);
     response
 }
 
@@ -142,155 +204,24 @@ pub fn paint_diamond(painter: &egui::Painter, at: Pos2, r: f32, fill: Color32, e
 
 /// Draws `icon` into `rect`.
 pub fn paint(painter: &egui::Painter, icon: Icon, rect: Rect, color: Color32) {
-    let stroke = Stroke::new(1.5, color);
-    let at = |x: f32, y: f32| {
-        pos2(
-            rect.left() + x * rect.width(),
-            rect.top() + y * rect.height(),
-        )
-    };
-    let line = |points: &[Pos2]| {
-        painter.line(points.to_vec(), stroke);
-    };
-    let fill = |points: &[Pos2]| {
-        painter.add(Shape::convex_polygon(points.to_vec(), color, Stroke::NONE));
-    };
-    match icon {
-        Icon::Eye | Icon::EyeShut => {
-            let lid = |up: f32| {
-                (0..=10)
-                    .map(|i| i as f32 / 10.0)
-                    .map(|x| at(x * 1.2 - 0.1, 0.5 - up * (x * std::f32::consts::PI).sin()))
-                    .collect::<Vec<_>>()
-            };
-            line(&lid(0.4));
-            line(&lid(-0.4));
-            if icon == Icon::Eye {
-                painter.circle_filled(rect.center(), rect.width() * 0.17, color);
-            } else {
-                line(&[at(0.0, 1.0), at(1.0, 0.0)]);
-            }
-        }
-        Icon::Up => line(&[at(0.0, 0.7), at(0.5, 0.25), at(1.0, 0.7)]),
-        Icon::Down => line(&[at(0.0, 0.3), at(0.5, 0.75), at(1.0, 0.3)]),
-        Icon::Left => line(&[at(0.7, 0.0), at(0.25, 0.5), at(0.7, 1.0)]),
-        Icon::Right => line(&[at(0.3, 0.0), at(0.75, 0.5), at(0.3, 1.0)]),
-        Icon::Reset => {
-            let arc = |i: i32| {
-                let angle = (-100.0 + 25.0 * i as f32).to_radians();
-                rect.center() + vec2(angle.cos(), angle.sin()) * rect.width() * 0.48
-            };
-            let points: Vec<_> = (0..=11).map(arc).collect();
-            line(&points);
-            line(&[
-                points[0] + vec2(2.5, -3.5),
-                points[0],
-                points[0] + vec2(3.5, 2.5),
-            ]);
-        }
-        Icon::Cross => {
-            line(&[at(0.1, 0.1), at(0.9, 0.9)]);
-            line(&[at(0.9, 0.1), at(0.1, 0.9)]);
-        }
-        Icon::Frame => {
-            for (x, y) in [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)] {
-                let inward = |v: f32| if v == 0.0 { 0.3 } else { 0.7 };
-                line(&[at(inward(x), y), at(x, y), at(x, inward(y))]);
-            }
-        }
-        Icon::Play => fill(&[at(0.12, -0.05), at(1.05, 0.5), at(0.12, 1.05)]),
-        Icon::Pause => {
-            fill(&[at(0.08, 0.0), at(0.38, 0.0), at(0.38, 1.0), at(0.08, 1.0)]);
-            fill(&[at(0.62, 0.0), at(0.92, 0.0), at(0.92, 1.0), at(0.62, 1.0)]);
-        }
-        Icon::ToStart => {
-            line(&[at(0.05, 0.0), at(0.05, 1.0)]);
-            fill(&[at(1.0, 0.0), at(0.25, 0.5), at(1.0, 1.0)]);
-        }
-        Icon::StepBack => {
-            line(&[at(0.95, 0.05), at(0.95, 0.95)]);
-            line(&[at(0.65, 0.05), at(0.1, 0.5), at(0.65, 0.95)]);
-        }
-        Icon::StepForward => {
-            line(&[at(0.05, 0.05), at(0.05, 0.95)]);
-            line(&[at(0.35, 0.05), at(0.9, 0.5), at(0.35, 0.95)]);
-        }
-        Icon::Loop => {
-            line(&[at(-0.1, 0.55), at(-0.1, 0.2), at(1.0, 0.2)]);
-            line(&[at(0.75, -0.05), at(1.02, 0.2), at(0.75, 0.45)]);
-            line(&[at(1.1, 0.45), at(1.1, 0.8), at(0.0, 0.8)]);
-            line(&[at(0.25, 0.55), at(-0.02, 0.8), at(0.25, 1.05)]);
-        }
-        Icon::More => {
-            for y in [0.05, 0.5, 0.95] {
-                painter.circle_filled(at(0.5, y), rect.width() * 0.13, color);
-            }
-        }
-        Icon::Star | Icon::StarFull => {
-            let corner = |i: i32| {
-                let (angle, radius) = (
-                    (36.0 * i as f32 - 90.0).to_radians(),
-                    if i % 2 == 0 { 0.6 } else { 0.26 },
-                );
-                rect.center() + vec2(angle.cos(), angle.sin()) * rect.width() * radius
-            };
-            let corners: Vec<Pos2> = (0..10).map(corner).collect();
-            if icon == Icon::StarFull {
-                // A star is not convex: a pentagon and five triangles are.
-                fill(
-                    &corners
-                        .iter()
-                        .skip(1)
-                        .step_by(2)
-                        .copied()
-                        .collect::<Vec<_>>(),
-                );
-                (0..5).for_each(|i| {
-                    fill(&[
-                        corners[(2 * i + 9) % 10],
-                        corners[2 * i],
-                        corners[2 * i + 1],
-                    ])
-                });
-            }
-            painter.add(Shape::closed_line(corners, Stroke::new(1.2, color)));
-        }
-        Icon::Grid => {
-            for (x, y) in [(0.0, 0.0), (0.58, 0.0), (0.0, 0.58), (0.58, 0.58)] {
-                painter.rect_filled(
-                    Rect::from_two_pos(at(x, y), at(x + 0.42, y + 0.42)),
-                    1.0,
-                    color,
-                );
-            }
-        }
-        Icon::List => {
-            for y in [0.0, 0.4, 0.8] {
-                painter.rect_filled(Rect::from_two_pos(at(0.0, y), at(0.2, y + 0.2)), 0.5, color);
-                painter.rect_filled(
-                    Rect::from_two_pos(at(0.34, y), at(1.0, y + 0.2)),
-                    0.5,
-                    color,
-                );
-            }
-        }
-        Icon::Grip => {
-            for (x, y) in [
-                (0.3, 0.05),
-                (0.3, 0.5),
-                (0.3, 0.95),
-                (0.7, 0.05),
-                (0.7, 0.5),
-                (0.7, 0.95),
-            ] {
-                painter.circle_filled(at(x, y), rect.width() * 0.1, color);
-            }
-        }
-        Icon::Dice => {
-            painter.rect_stroke(rect, 2.0, stroke, egui::StrokeKind::Middle);
-            for (x, y) in [(0.27, 0.27), (0.5, 0.5), (0.73, 0.73)] {
-                painter.circle_filled(at(x, y), rect.width() * 0.1, color);
-            }
+    for stroke in icon.strokes().split(';') {
+        let (kind, numbers) = stroke.trim().split_at(1);
+        let mut numbers = numbers.split_whitespace().filter_map(|n| n.parse().ok());
+        let radius: f32 = if kind == "o" {
+            numbers.next().unwrap_or_default()
+        } else {
+            0.0
+        };
+        let numbers: Vec<f32> = numbers.collect();
+        let at = |xy: &[f32]| rect.min + vec2(xy[0], xy[1]) * rect.size();
+        let points: Vec<Pos2> = numbers.chunks_exact(2).map(at).collect();
+        match (kind, &points[..]) {
+            ("o", dots) => dots.iter().for_each(|dot| {
+                painter.circle_filled(*dot, radius * rect.width(), color);
+            }),
+            ("r", [a, b]) => drop(painter.rect_filled(Rect::from_two_pos(*a, *b), 1.0, color)),
+            ("f", _) => drop(painter.add(Shape::convex_polygon(points, color, Stroke::NONE))),
+            _ => drop(painter.line(points, Stroke::new(1.5, color))),
         }
     }
 }

@@ -1,6 +1,7 @@
 //! What panels are made of: rows, numbers, icons, texts and the theme.
 
 pub mod fields;
+pub mod form;
 pub mod fuzzy;
 pub mod icons;
 pub mod numbers;
@@ -9,3 +10,4 @@ pub mod reveal;
 pub mod size;
 pub mod text;
 pub mod theme;
+pub mod tile;

@@ -1,35 +1,26 @@
 //! The size of a picture: width and height as numbers, or one of the sizes that have a name.
 
-use eframe::egui::{ComboBox, DragValue, Ui};
+use eframe::egui::Ui;
 
-use crate::preset::{NAMED_SIZES, named_size};
+use super::form::{menu_ui, number_ui};
+use crate::preset::NAMED_SIZES;
 
-/// The sizes by name; choosing one sets `size`. `of` says what has the size.
-fn names_ui(ui: &mut Ui, of: &str, size: &mut [u32; 2]) {
-    let is_chosen = |(_, named): &&(&str, [u32; 2])| named == size;
-    let chosen = NAMED_SIZES.iter().find(is_chosen);
-    let menu = ComboBox::from_id_salt(("named size", of))
-        .selected_text(chosen.map_or("own size", |(name, _)| *name))
-        .width(88.0)
-        .show_ui(ui, |ui| {
-            for (name, [width, height]) in NAMED_SIZES {
-                let is_chosen = named_size(name) == Some(*size);
-                let label = format!("{name}: {width} \u{d7} {height}");
-                if ui.selectable_label(is_chosen, label).clicked() {
-                    *size = [width, height];
-                }
-            }
-        });
-    menu.response
-        .accessible_name(format!("Size of {of} by name"));
-}
-
-/// Width and height in pixels from `step` to `most`, both whole multiples of `step`.
+/// Width and height in pixels from `step` to `most`, both whole multiples of `step`; `of` says what
+/// has the size.
 pub fn size_ui(ui: &mut Ui, of: &str, size: &mut [u32; 2], step: u32, most: u32) {
     for (side, name) in size.iter_mut().zip(["Width", "Height"]) {
-        ui.add(DragValue::new(side).range(step..=most).suffix(" px"))
-            .accessible_name(format!("{name} of {of}"));
+        let name = format!("{name} of {of}");
+        number_ui(ui, &name, side, step..=most, (1.0, " px"));
         *side -= *side % step.max(1);
     }
-    names_ui(ui, of, size);
+    let now = NAMED_SIZES.iter().find(|(_, named)| named == size);
+    let now = now.map_or("own size", |(name, _)| *name);
+    let sizes = NAMED_SIZES.iter().map(|(name, [width, height])| {
+        let label = format!("{name}: {width} \u{d7} {height}");
+        ([*width, *height], label, "")
+    });
+    let name = format!("Size of {of} by name");
+    if let (Some(named), _) = menu_ui(ui, &name, (now, 88.0), Some(size), sizes) {
+        *size = named;
+    }
 }

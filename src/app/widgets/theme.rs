@@ -262,6 +262,21 @@ pub fn heading(text: &str) -> RichText {
     RichText::new(text).strong().size(13.0).color(text_strong())
 }
 
+/// Title of a dialog.
+pub fn title(text: impl Into<String>) -> RichText {
+    strong(text).size(15.0).strong()
+}
+
+/// Text that stands out.
+pub fn strong(text: impl Into<String>) -> RichText {
+    RichText::new(text).color(text_strong())
+}
+
+/// Secondary text in small letters.
+pub fn small(text: impl Into<String>) -> RichText {
+    weak(text).size(11.0)
+}
+
 /// Secondary text.
 pub fn weak(text: impl Into<String>) -> RichText {
     RichText::new(text).color(text_weak())

@@ -30,37 +30,17 @@ fn float_operators() {
 
 #[test]
 fn integer_operators() {
-    two("a + b", |a: i32, b: i32| a.wrapping_add(b));
-    two("a - b", |a: i32, b: i32| a.wrapping_sub(b));
-    two("a * b", |a: i32, b: i32| a.wrapping_mul(b));
-    two("a / b", |a: i32, b: i32| {
-        if b == 0 || a == i32::MIN && b == -1 {
-            a
-        } else {
-            a / b
-        }
-    });
-    two("a % b", |a: i32, b: i32| {
-        if b == 0 || a == i32::MIN && b == -1 {
-            0
-        } else {
-            a % b
-        }
-    });
     two("a + b", |a: u32, b: u32| a.wrapping_add(b));
     two("a - b", |a: u32, b: u32| a.wrapping_sub(b));
     two("a * b", |a: u32, b: u32| a.wrapping_mul(b));
     two("a / b", |a: u32, b: u32| a.checked_div(b).unwrap_or(a));
     two("a % b", |a: u32, b: u32| a.checked_rem(b).unwrap_or(0));
-    two("a & b", |a: i32, b: i32| a & b);
     two("a | b", |a: u32, b: u32| a | b);
     two("a ^ b", |a: u32, b: u32| a ^ b);
     two("a << b", |a: u32, b: u32| a << (b % 32));
     two("a >> b", |a: u32, b: u32| a >> (b % 32));
     two("a << b", |a: i32, b: u32| a << (b % 32));
     two("a >> b", |a: i32, b: u32| a >> (b % 32));
-    one("-a", |a: i32| a.wrapping_neg());
-    one("~a", |a: i32| !a);
     one("~a", |a: u32| !a);
     two("a < b", |a: i32, b: i32| a < b);
     two("a >= b", |a: i32, b: i32| a >= b);
@@ -174,26 +154,32 @@ fn float_functions() {
             _ => 2.0 * (a / 2.0).round(),
         }
     });
-    one("sqrt(a)", f64::sqrt);
+    let functions: [(&str, fn(f64) -> f64); 18] = [
+        ("sqrt", f64::sqrt),
+        ("exp", f64::exp),
+        ("exp2", f64::exp2),
+        ("log", f64::ln),
+        ("log2", f64::log2),
+        ("sin", f64::sin),
+        ("cos", f64::cos),
+        ("tan", f64::tan),
+        ("asin", f64::asin),
+        ("acos", f64::acos),
+        ("atan", f64::atan),
+        ("sinh", f64::sinh),
+        ("cosh", f64::cosh),
+        ("tanh", f64::tanh),
+        ("asinh", f64::asinh),
+        ("acosh", f64::acosh),
+        ("atanh", f64::atanh),
+        ("length", f64::abs),
+    ];
+    for (name, function) in functions {
+        one(&format!("{name}(a)"), function);
+    }
     one("inverseSqrt(a)", |a: f64| 1.0 / a.sqrt());
-    one("exp(a)", f64::exp);
-    one("exp2(a)", f64::exp2);
-    one("log(a)", f64::ln);
-    one("log2(a)", f64::log2);
     two("pow(a, b)", f64::powf);
-    one("sin(a)", f64::sin);
-    one("cos(a)", f64::cos);
-    one("tan(a)", f64::tan);
-    one("asin(a)", f64::asin);
-    one("acos(a)", f64::acos);
-    one("atan(a)", f64::atan);
     two("atan2(a, b)", f64::atan2);
-    one("sinh(a)", f64::sinh);
-    one("cosh(a)", f64::cosh);
-    one("tanh(a)", f64::tanh);
-    one("asinh(a)", f64::asinh);
-    one("acosh(a)", f64::acosh);
-    one("atanh(a)", f64::atanh);
     one("radians(a)", |a: f64| a * std::f64::consts::PI / 180.0);
     one("degrees(a)", |a: f64| a * 180.0 / std::f64::consts::PI);
     two(
@@ -228,7 +214,6 @@ fn float_functions() {
         |a: f64| a != 0.0 && a.is_finite(),
     );
     two("ldexp(a, b % 500)", |a: f64, b: i32| a * 2f64.powi(b % 500));
-    one("length(a)", f64::abs);
     two("distance(a, b)", |a: f64, b: f64| (a - b).abs());
 }
 
@@ -237,8 +222,6 @@ fn integer_functions() {
     one("abs(a)", |a: i32| a.wrapping_abs());
     one("abs(a)", |a: u32| a);
     one("sign(a)", |a: i32| a.signum());
-    two("min(a, b)", |a: i32, b: i32| a.min(b));
-    two("max(a, b)", |a: i32, b: i32| a.max(b));
     two("min(a, b)", |a: u32, b: u32| a.min(b));
     two("max(a, b)", |a: u32, b: u32| a.max(b));
     three("clamp(a, b, c)", |a: i32, b: i32, c: i32| a.max(b).min(c));

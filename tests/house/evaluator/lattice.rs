@@ -1,6 +1,6 @@
 //! Checks of expressions on a lattice of values.
 
-use rasterlab::evaluator::Word;
+use rasterlab::evaluator::{NoHost, Word};
 
 use super::common::{call, floats, program, to_floats};
 
@@ -32,212 +32,141 @@ impl Scalar for f64 {
     }
 
     fn lattice() -> Vec<f64> {
-        let smallest = f64::from(f32::from_bits(1));
+        let (smallest, normal) = (f64::from(f32::from_bits(1)), f64::from(f32::MIN_POSITIVE));
+        let two_to_31 = 2f64.powi(31);
         let mut values = vec![
-            0.0,
-            smallest,
-            f64::from(f32::MIN_POSITIVE),
-            1e-30,
-            1e-4,
-            0.1,
-            0.25,
-            0.5,
-            0.75,
-            0.999,
-            1.0,
-            1.5,
-            2.0,
-            2.5,
-            3.0,
+            0.0, smallest, normal, 1e-30, 1e-4, 0.1, 0.25, 0.5, 0.75, 0.999, 1.0, 1.5, 2.0, 2.5,
+            3.0, 3.5, 7.3, 127.5, 1000.25, 65504.0, 65520.0, 16777217.0, 1e30,
         ];
-        values.extend([
-            3.5,
-            7.3,
-            127.5,
-            1000.25,
-            65504.0,
-            65520.0,
-            16777217.0,
-            2147483520.0,
-            2147483648.0,
-            4294967296.0,
-            1e30,
-            f64::INFINITY,
-        ]);
+        values.extend([two_to_31 - 128.0, two_to_31, 2.0 * two_to_31, f64::INFINITY]);
         values.extend(values.clone().iter().map(|x| -x));
         values.push(f64::NAN);
         values
     }
 }
 
-impl Scalar for i32 {
-    const NAME: &'static str = "i32";
+/// A type of whole numbers or flags.
+macro_rules! whole {
+    ($type:ty, $from:ident, $to:ident, $lattice:expr) => {
+        impl Scalar for $type {
+            const NAME: &'static str = stringify!($type);
 
-    fn word(self) -> Word {
-        Word::from_i32(self)
-    }
+            fn word(self) -> Word {
+                Word::$from(self)
+            }
 
-    fn value(word: Word) -> i32 {
-        word.to_i32()
-    }
+            fn value(word: Word) -> Self {
+                word.$to()
+            }
 
-    fn same(self, other: i32) -> bool {
-        self == other
-    }
+            fn same(self, other: Self) -> bool {
+                self == other
+            }
 
-    fn lattice() -> Vec<i32> {
-        vec![
-            0,
-            1,
-            -1,
-            2,
-            -2,
-            3,
-            7,
-            -7,
-            31,
-            32,
-            33,
-            100,
-            -100,
-            0x1234_5678,
-            -0x1234_5678,
-            i32::MAX,
-            i32::MIN,
-            i32::MIN + 1,
-            0x5555_5555,
-        ]
-    }
-}
-
-impl Scalar for u32 {
-    const NAME: &'static str = "u32";
-
-    fn word(self) -> Word {
-        Word::from_u32(self)
-    }
-
-    fn value(word: Word) -> u32 {
-        word.to_u32()
-    }
-
-    fn same(self, other: u32) -> bool {
-        self == other
-    }
-
-    fn lattice() -> Vec<u32> {
-        i32::lattice().into_iter().map(i32::cast_unsigned).collect()
-    }
-}
-
-impl Scalar for bool {
-    const NAME: &'static str = "bool";
-
-    fn word(self) -> Word {
-        Word::from_bool(self)
-    }
-
-    fn value(word: Word) -> bool {
-        word.to_bool()
-    }
-
-    fn same(self, other: bool) -> bool {
-        self == other
-    }
-
-    fn lattice() -> Vec<bool> {
-        vec![false, true]
-    }
-}
-
-#[track_caller]
-pub fn check<R: Scalar>(expression: &str, at: &dyn std::fmt::Debug, given: R, expected: R) {
-    assert!(
-        given.same(expected),
-        "{expression} at {at:?} is {given:?} instead of {expected:?}"
-    );
-}
-
-/// `expression` of `a`, for scalars and for a component of a vector.
-#[track_caller]
-pub fn one<A: Scalar, R: Scalar>(expression: &str, expected: impl Fn(A) -> R) {
-    let scalar = program(
-        &format!(
-            "fn f(a: {}) -> {} {{ return {expression}; }}",
-            A::NAME,
-            R::NAME
-        ),
-        "f",
-    );
-    let mut machine = scalar.machine();
-    for a in A::lattice() {
-        let given = machine
-            .call(&[a.word()], &mut rasterlab::evaluator::NoHost)
-            .expect("no loops")[0];
-        check(expression, &a, R::value(given), expected(a));
-    }
-}
-
-#[track_caller]
-pub fn two<A: Scalar, B: Scalar, R: Scalar>(expression: &str, expected: impl Fn(A, B) -> R) {
-    let source = format!(
-        "fn f(a: {}, b: {}) -> {} {{ return {expression}; }}",
-        A::NAME,
-        B::NAME,
-        R::NAME
-    );
-    let scalar = program(&source, "f");
-    let mut machine = scalar.machine();
-    for a in A::lattice() {
-        for b in B::lattice() {
-            let given = machine
-                .call(&[a.word(), b.word()], &mut rasterlab::evaluator::NoHost)
-                .expect("no loops")[0];
-            check(expression, &(a, b), R::value(given), expected(a, b));
+            fn lattice() -> Vec<Self> {
+                $lattice
+            }
         }
-    }
+    };
 }
 
+whole!(i32, from_i32, to_i32, INTEGERS.to_vec());
+whole!(
+    u32,
+    from_u32,
+    to_u32,
+    INTEGERS.map(i32::cast_unsigned).to_vec()
+);
+whole!(bool, from_bool, to_bool, vec![false, true]);
+
+const INTEGERS: [i32; 19] = [
+    0,
+    1,
+    -1,
+    2,
+    -2,
+    3,
+    7,
+    -7,
+    31,
+    32,
+    33,
+    100,
+    -100,
+    0x12345678,
+    -0x1234567,
+    i32::MAX,
+    i32::MIN,
+    -i32::MAX,
+    0x55555555,
+];
+
+/// Compares `expression` of `a`, `b` and `c` with what is expected.
 #[track_caller]
 pub fn three<A: Scalar, B: Scalar, C: Scalar, R: Scalar>(
     expression: &str,
     expected: impl Fn(A, B, C) -> R,
 ) {
-    let source = format!(
-        "fn f(a: {}, b: {}, c: {}) -> {} {{ return {expression}; }}",
-        A::NAME,
-        B::NAME,
-        C::NAME,
-        R::NAME
-    );
-    let scalar = program(&source, "f");
-    let mut machine = scalar.machine();
+    let [a, b, c, result] = [A::NAME, B::NAME, C::NAME, R::NAME];
+    let source = format!("fn f(a: {a}, b: {b}, c: {c}) -> {result} {{ return {expression}; }}");
+    let program = program(&source, "f");
+    let mut machine = program.machine();
     for a in A::lattice() {
         for b in B::lattice() {
             for c in C::lattice() {
-                let given = machine
-                    .call(
-                        &[a.word(), b.word(), c.word()],
-                        &mut rasterlab::evaluator::NoHost,
-                    )
-                    .expect("no loops")[0];
-                check(expression, &(a, b, c), R::value(given), expected(a, b, c));
+                let arguments = [a.word(), b.word(), c.word()];
+                let result = machine.call(&arguments, &mut NoHost).expect("no loops")[0];
+                let (given, expected) = (R::value(result), expected(a, b, c));
+                assert!(
+                    given.same(expected),
+                    "{expression} at {:?} is {given:?} instead of {expected:?}",
+                    (a, b, c)
+                );
             }
         }
+    }
+}
+
+#[track_caller]
+pub fn two<A: Scalar, B: Scalar, R: Scalar>(expression: &str, expected: impl Fn(A, B) -> R) {
+    three(expression, |a, b, _: Unused| expected(a, b));
+}
+
+#[track_caller]
+pub fn one<A: Scalar, R: Scalar>(expression: &str, expected: impl Fn(A) -> R) {
+    two(expression, |a, _: Unused| expected(a));
+}
+
+/// An argument that an expression does not name.
+#[derive(Clone, Copy, Debug)]
+struct Unused;
+
+impl Scalar for Unused {
+    const NAME: &'static str = "u32";
+
+    fn word(self) -> Word {
+        Word::ZERO
+    }
+
+    fn value(_: Word) -> Self {
+        Self
+    }
+
+    fn same(self, _: Self) -> bool {
+        true
+    }
+
+    fn lattice() -> Vec<Self> {
+        vec![Self]
     }
 }
 
 /// A vector-valued or many-argument function, at chosen floats.
 #[track_caller]
 pub fn vectors(signature: &str, expression: &str, arguments: &[f64], expected: &[f64]) {
-    let program = program(
-        &format!(
-            "fn f({}) -> {} {{ return {expression}; }}",
-            signature.split(" -> ").next().unwrap(),
-            signature.split(" -> ").nth(1).unwrap()
-        ),
-        "f",
-    );
+    let (arguments_of, result) = signature.split_once(" -> ").expect("a result");
+    let source = format!("fn f({arguments_of}) -> {result} {{ return {expression}; }}");
+    let program = program(&source, "f");
     let given = to_floats(&call(&program, &floats(arguments)));
     assert_eq!(given.len(), expected.len());
     for (given, expected) in given.iter().zip(expected) {

@@ -1,6 +1,6 @@
 //! Limits, errors, and what cannot be lowered.
 
-use rasterlab::evaluator::{EvalError, Host, Limits, LowerError, NoHost, Options, Program, Word};
+use rasterlab::evaluator::{EvalError, Host, LowerError, NoHost, Options, Program, Word};
 
 use super::{
     common,
@@ -194,37 +194,29 @@ fn overrides_take_their_values() {
         fn scaled(x: f32) -> f32 { if ON { return x; } return x * TWICE; }
         fn counted() -> u32 { return COUNT; }
         fn level() -> i32 { return LEVEL; }";
-    assert_eq!(
-        call(&program(source, "scaled"), &[Word::from_f64(3.0)]),
-        [Word::from_f64(12.0)]
-    );
-    let with = |name: &str, value: f64| Options {
-        overrides: [(name.to_owned(), value)].into(),
-        ..Options::default()
-    };
-    assert_eq!(
-        call(
-            &program_with(source, "scaled", &with("SCALE", 0.1)),
-            &[Word::from_f64(3.0)]
-        ),
-        [Word::from_f64(3.0 * 0.2)]
-    );
-    assert_eq!(
-        call(
-            &program_with(source, "scaled", &with("ON", 1.0)),
-            &[Word::from_f64(3.0)]
-        ),
-        [Word::from_f64(3.0)]
-    );
-    assert_eq!(
-        call(&program_with(source, "counted", &with("COUNT", 5.0)), &[]),
-        [Word::from_u32(5)]
-    );
-    assert_eq!(
-        call(&program_with(source, "level", &with("7", -9.0)), &[]),
-        [Word::from_i32(-9)]
-    );
-    assert_eq!(call(&program(source, "level"), &[]), [Word::from_i32(-3)]);
+    let three = Word::from_f64(3.0);
+    let cases = [
+        ("scaled", None, Word::from_f64(12.0)),
+        ("scaled", Some(("SCALE", 0.1)), Word::from_f64(3.0 * 0.2)),
+        ("scaled", Some(("ON", 1.0)), three),
+        ("counted", Some(("COUNT", 5.0)), Word::from_u32(5)),
+        ("level", Some(("7", -9.0)), Word::from_i32(-9)),
+        ("level", None, Word::from_i32(-3)),
+    ];
+    for (function, set, expected) in cases {
+        let overrides = set.map(|(name, value)| (name.to_owned(), value));
+        let options = Options {
+            overrides: overrides.into_iter().collect(),
+            ..Options::default()
+        };
+        let arguments = if function == "scaled" {
+            &[three][..]
+        } else {
+            &[]
+        };
+        let program = program_with(source, function, &options);
+        assert_eq!(call(&program, arguments), [expected], "{function} {set:?}");
+    }
     assert_eq!(
         refused(source, "counted"),
         LowerError::Override {
@@ -295,24 +287,4 @@ fn the_host_computes_its_functions_and_supplies_variables() {
         let result = common::to_floats(machine.call(&arguments, &mut Square).unwrap());
         assert_eq!(result, [(32.0 + 3.0) * 10.0, (18.0 + 3.0) * 10.0, 1060.0]);
     }
-}
-
-#[test]
-fn array_lengths_may_be_overridden() {
-    let source = "override N: u32 = 4u; var<private> a: array<u32, N>;
-        fn f(i: u32) -> u32 { for (var k = 0u; k < N; k++) { a[k] = k * k; } return a[i]; }";
-    // naga allows such arrays only in workgroup memory, so the module is not validated.
-    let Ok(module) = naga::front::wgsl::parse_str(source) else {
-        return;
-    };
-    let Ok(program) = Program::new(&module, "f", &Options::default()) else {
-        return;
-    };
-    assert_eq!(call(&program, &[Word::from_u32(3)]), [Word::from_u32(9)]);
-}
-
-#[test]
-fn limits_have_sensible_defaults() {
-    let limits = Limits::default();
-    assert!(limits.steps >= 100_000 && limits.slots >= 1 << 12);
 }

@@ -14,37 +14,33 @@ fn float(program: &Program, x: f64) -> f64 {
 
 #[test]
 fn literals_are_the_numbers_that_were_written() {
-    assert_eq!(
-        float(
-            &program("fn f(x: f32) -> f32 { return x * 0.1; }", "f"),
-            3.0
+    let cases = [
+        ("fn f(x: f32) -> f32 { return x * 0.1; }", 3.0, 3.0 * 0.1),
+        (
+            "const C = 1e-6; fn f(x: f32) -> f32 { return x + C; }",
+            0.0,
+            1e-6,
         ),
-        3.0 * 0.1
-    );
-    assert_eq!(
-        float(
-            &program("const C = 1e-6; fn f(x: f32) -> f32 { return x + C; }", "f"),
-            0.0
+        (
+            "fn f(x: f32) -> f32 { return x + vec3f(0.7152).y; }",
+            0.0,
+            0.7152,
         ),
-        1e-6
-    );
-    assert_eq!(
-        float(
-            &program("fn f(x: f32) -> f32 { return x + vec3f(0.7152).y; }", "f"),
-            0.0
+        (
+            "var<private> p: vec2f = vec2f(0.3, 0.2126); fn f(x: f32) -> f32 { return x + p.y; }",
+            0.0,
+            0.2126,
         ),
-        0.7152
-    );
-    assert_eq!(
-        float(
-            &program(
-                "var<private> p: vec2f = vec2f(0.3, 0.2126); fn f(x: f32) -> f32 { return x + p.y; }",
-                "f"
-            ),
-            0.0
+        // naga computes constant expressions in f32.
+        (
+            "fn f(x: f32) -> f32 { return x + 1.0f / 3.0f; }",
+            0.0,
+            0.33333334,
         ),
-        0.2126
-    );
+    ];
+    for (source, x, expected) in cases {
+        assert_eq!(float(&program(source, "f"), x), expected, "{source}");
+    }
     let source = "fn f(x: f32) -> f32 { return x * 0.017453292519943295; }";
     assert_eq!(float(&program(source, "f"), 1.0), 0.017453292);
     let with_source = Options {
@@ -55,28 +51,16 @@ fn literals_are_the_numbers_that_were_written() {
         float(&program_with(source, "f", &with_source), 1.0),
         0.017453292519943295
     );
-    // naga computes constant expressions in f32.
-    assert_eq!(
-        float(
-            &program("fn f(x: f32) -> f32 { return x + 1.0f / 3.0f; }", "f"),
-            0.0
-        ),
-        0.33333334
-    );
     for text in ["-0.5", "1.5f", "3", "2e3", "0x1p-3"] {
         let source = format!("fn f(x: f32) -> f32 {{ return x + {text}; }}");
-        let program = program_with(
-            &source,
-            "f",
-            &Options {
-                source: Some(&source),
-                ..Options::default()
-            },
-        );
-        let expected = if text == "0x1p-3" {
-            0.125
-        } else {
-            text.trim_end_matches('f').parse().unwrap()
+        let options = Options {
+            source: Some(&source),
+            ..Options::default()
+        };
+        let program = program_with(&source, "f", &options);
+        let expected = match text {
+            "0x1p-3" => 0.125,
+            decimal => decimal.trim_end_matches('f').parse().unwrap(),
         };
         assert_eq!(float(&program, 0.0), expected, "{text}");
     }

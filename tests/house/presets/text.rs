@@ -69,71 +69,46 @@ why = "because"
 "##,
     );
     let s = &preset_file.preset;
-    assert_eq!(preset_file.warnings, Vec::<String>::new());
-    assert_eq!(
-        (
-            s.name.as_str(),
-            s.tags.len(),
-            s.spin_deg_per_s,
-            s.clock.time_s
-        ),
-        ("Ink on glass", 2, 30.0, 1.25)
-    );
-    assert_eq!(
-        s.stack
-            .0
-            .iter()
-            .map(|e| e.effect.name.as_str())
-            .collect::<Vec<_>>(),
-        ["lambert", "facet"]
-    );
+    assert_eq!(preset_file.warnings, [""; 0]);
+    assert_eq!((s.name.as_str(), s.tags.len()), ("Ink on glass", 2));
+    assert_eq!(s.spin_deg_per_s, 30.0);
+    assert_eq!(stack_names(&preset_file), ["lambert", "facet"]);
     let facet = s.stack.get("facet").unwrap();
-    let value = |name: &str| facet.effect.field(name).unwrap().get(&facet.words);
-    assert_eq!(
-        (value("amount"), value("pattern"), value("center")),
-        (vec![f64::from(0.8f32)], vec![2.0], vec![1.0, 2.0, 3.0])
-    );
-    assert_eq!(
-        s.camera.unwrap().projection,
-        Projection::Perspective { fov_y_deg: 60.0 }
-    );
-    assert_eq!(
-        s.clock,
-        Clock {
-            time_s: 1.25,
-            range_s: [0.0, 2.5],
-            is_looping: false,
-            speed: 0.5
-        }
-    );
-    let amount = s.animation.get("facet", "amount").unwrap();
-    assert_eq!(
-        amount
-            .keys()
-            .iter()
+    let field = |name: &str| facet.effect.field(name).unwrap();
+    assert_eq!(field("amount").get(&facet.words), [f64::from(0.8f32)]);
+    assert_eq!(field("pattern").get(&facet.words), [2.0]);
+    assert_eq!(field("center").get(&facet.words), [1.0, 2.0, 3.0]);
+    let projection = Projection::Perspective { fov_y_deg: 60.0 };
+    assert_eq!(s.camera.unwrap().projection, projection);
+    let clock = Clock {
+        time_s: 1.25,
+        range_s: [0.0, 2.5],
+        is_looping: false,
+        speed: 0.5,
+    };
+    assert_eq!(s.clock, clock);
+    let easings = |field: &str| {
+        let keys = s.animation.get("facet", field).unwrap().keys();
+        keys.iter()
             .map(|key| (key.time_s, key.easing))
-            .collect::<Vec<_>>(),
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(
+        easings("amount"),
         [(0.0, Easing::Smooth), (2.0, Easing::Linear)]
     );
-    assert_eq!(
-        s.animation.get("facet", "seed").unwrap().keys()[0].easing,
-        Easing::Hold
-    );
+    assert_eq!(easings("seed"), [(1.0, Easing::Hold)]);
     // 0.625 of the way in time, by the smoothstep.
     let posed = s.evaluated_stack().get("facet").unwrap().words.clone();
-    assert_eq!(
-        facet.effect.field("amount").unwrap().get(&posed),
-        [f64::from((0.625f64 * 0.625 * (3.0 - 1.25)) as f32)]
-    );
-    assert_eq!(facet.effect.field("seed").unwrap().get(&posed), [7.0]);
-    assert_eq!(
-        s.accuracy,
-        AccuracyRequest {
-            tier: Tier::Fast,
-            pins: PinnedOptions::of(Visibility::Packed64),
-            ..AccuracyRequest::default()
-        }
-    );
+    let smooth = 0.625f64 * 0.625 * (3.0 - 1.25);
+    assert_eq!(field("amount").get(&posed), [f64::from(smooth as f32)]);
+    assert_eq!(field("seed").get(&posed), [7.0]);
+    let accuracy = AccuracyRequest {
+        tier: Tier::Fast,
+        pins: PinnedOptions::of(Visibility::Packed64),
+        ..AccuracyRequest::default()
+    };
+    assert_eq!(s.accuracy, accuracy);
     assert_eq!(s.output.size, [64, 48]);
     assert_eq!(s.test.as_ref().unwrap().max_channel, 2);
 }
@@ -177,10 +152,10 @@ fn comments_and_unknown_keys_survive_a_change() {
 fn only_differences_from_defaults_are_written() {
     let mut preset_file = PresetFile::new("new", Preset::default());
     assert_eq!(preset_file::to_toml(&preset_file), "schema = 2\n");
-    preset_file::set(&mut preset_file, "facet", "").unwrap();
-    preset_file::set(&mut preset_file, "lambert.headlight", "0.2").unwrap();
-    preset_file::set(&mut preset_file, "accuracy.tier", "draft").unwrap();
-    preset_file::set(&mut preset_file, "camera", "").unwrap();
+    set_all(
+        &mut preset_file,
+        "facet=\nlambert.headlight=0.2\naccuracy.tier=draft\ncamera=",
+    );
     assert_eq!(
         preset_file::to_toml(&preset_file),
         "schema = 2\n\n[camera]\n\n[effects.facet]\n\n[effects.lambert]\nheadlight = 0.2\n\n[accuracy]\ntier = \"draft\"\n"
@@ -216,22 +191,30 @@ fn the_stack_key_is_written_only_where_order_is_unusual() {
 
 #[test]
 fn the_stack_key_names_each_enabled_effect_exactly_once() {
-    let with =
-        |stack: &str| format!("schema = 2\nstack = {stack}\n[effects.facet]\n[effects.lambert]\n");
-    assert_eq!(
-        refusal(&with("[\"facet\"]")),
-        "preset.toml:2: stack leaves out lambert, which is enabled"
-    );
-    assert_eq!(
-        refusal(&with("[\"facet\", \"lambert\", \"facet\"]")),
-        "preset.toml:2: stack names facet twice"
-    );
-    assert!(
-        refusal(&with("[\"facet\", \"lambert\", \"depth\"]"))
-            .contains("names depth, which is not enabled")
-    );
-    assert!(refusal(&with("[\"fascet\", \"lambert\"]")).contains("did you mean \"facet\"?"));
-    assert!(refusal(&with("\"facet\"")).contains("must be a list of effect names"));
+    let with = |stack: &str| {
+        refusal(&format!(
+            "schema = 2\nstack = {stack}\n[effects.facet]\n[effects.lambert]\n"
+        ))
+    };
+    for (stack, wanted) in [
+        (
+            r#"["facet"]"#,
+            "preset.toml:2: stack leaves out lambert, which is enabled",
+        ),
+        (
+            r#"["facet", "lambert", "facet"]"#,
+            "preset.toml:2: stack names facet twice",
+        ),
+        (
+            r#"["facet", "lambert", "depth"]"#,
+            "names depth, which is not enabled",
+        ),
+        (r#"["fascet", "lambert"]"#, "did you mean \"facet\"?"),
+        (r#""facet""#, "must be a list of effect names"),
+    ] {
+        let said = with(stack);
+        assert!(said.contains(wanted), "{said}");
+    }
 }
 
 #[test]
@@ -298,43 +281,24 @@ fn keys_are_written_one_a_line_and_comments_stay_with_theirs() {
 #[test]
 fn set_animates_and_a_value_set_by_hand_holds_still() {
     let mut preset_file = PresetFile::new("new", Preset::default());
-    preset_file::set(
+    set_all(
         &mut preset_file,
-        "animation.facet.amount",
-        "[{ time_s = 0, value = 0 }, { time_s = 1, value = 1 }]",
-    )
-    .unwrap();
-    preset_file::set(&mut preset_file, "clock.range_s", "[1, 2]").unwrap();
+        "animation.facet.amount=[{ time_s = 0, value = 0 }, { time_s = 1, value = 1 }]\nclock.range_s=[1, 2]",
+    );
     assert!(preset_file.preset.is_moving() && preset_file.preset.stack.get("facet").is_some());
     assert_eq!(
         parse(&preset_file::to_toml(&preset_file)).preset,
         preset_file.preset
     );
-    for (path, value, wanted) in [
-        (
-            "animation.facet.amount",
-            "[{ time_s = 0, value = 9 }]",
-            "keyframe 1: value 9 lies outside 0..=1",
-        ),
-        (
-            "animation.facet.amount",
-            "[",
-            "--set: animation.facet.amount",
-        ),
-        ("animation.facet", "1", "animation.facet takes no value"),
-        ("animation.facet.amuont", "[]", "did you mean \"amount\"?"),
-        (
-            "animation.camera.eye",
-            "[]",
-            "is unknown; only parameters of effects can be animated",
-        ),
-        ("clock.range_s", "[2, 1]", "clock.range_s must rise"),
-    ] {
-        let error = preset_file::set(&mut preset_file, path, value)
-            .unwrap_err()
-            .to_string();
-        assert!(error.contains(wanted) && !error.contains('\n'), "{error}");
-    }
+    let faulty = "
+animation.facet.amount=[{ time_s = 0, value = 9 }] ⇒ keyframe 1: value 9 lies outside 0..=1
+animation.facet.amount=[ ⇒ --set: animation.facet.amount
+animation.facet=1 ⇒ animation.facet takes no value
+animation.facet.amuont=[] ⇒ did you mean \"amount\"?
+animation.camera.eye=[] ⇒ is unknown; only parameters of effects can be animated
+clock.range_s=[2, 1] ⇒ clock.range_s must rise
+";
+    all_unset(&preset_file, faulty);
     preset_file::set(&mut preset_file, "facet.amount", "0.5").unwrap();
     assert!(preset_file.preset.animation.is_empty() && !preset_file.preset.is_moving());
     for unset in [
@@ -344,12 +308,10 @@ fn set_animates_and_a_value_set_by_hand_holds_still() {
         "facet.amount",
         "facet",
     ] {
-        preset_file::set(
+        set_all(
             &mut preset_file,
-            "animation.facet.amount",
-            "[{ time_s = 0, value = 0 }]",
-        )
-        .unwrap();
+            "animation.facet.amount=[{ time_s = 0, value = 0 }]",
+        );
         preset_file::unset(&mut preset_file, unset).unwrap();
         assert!(preset_file.preset.animation.is_empty(), "{unset}");
     }
@@ -358,72 +320,24 @@ fn set_animates_and_a_value_set_by_hand_holds_still() {
 #[test]
 fn set_obeys_the_rules_of_files() {
     let mut preset_file = PresetFile::new("new", Preset::default());
-    for (path, value, wanted) in [
-        (
-            "facet.amount",
-            "2",
-            "--set: facet.amount 2 lies outside 0..=1",
-        ),
-        (
-            "facet.amount",
-            "inf",
-            "facet.amount inf is not a finite number",
-        ),
-        (
-            "facet.amuont",
-            "1",
-            "facet.amuont is unknown; did you mean \"amount\"?",
-        ),
-        ("fascet.amount", "1", "did you mean \"facet.amount\"?"),
-        (
-            "output.size",
-            "[1]",
-            "output.size must be a list of 2 numbers",
-        ),
-        ("facet", "1", "facet takes no value"),
-        (
-            "stack",
-            "[\"facet\"]",
-            "stack names facet, which is not enabled",
-        ),
-        (
-            "facet.amount",
-            "",
-            "--set: facet.amount needs a value, as in --set facet.amount=VALUE",
-        ),
-        ("camera.eye", "", "--set: camera.eye needs a value"),
-        ("stack", "", "--set: stack needs a value"),
-    ] {
-        let error = preset_file::set(&mut preset_file, path, value)
-            .unwrap_err()
-            .to_string();
-        assert!(error.contains(wanted), "{error}");
-    }
-    assert_eq!(
-        preset_file.preset,
-        Preset::default(),
-        "a refused value changes nothing"
-    );
-    for (path, value) in [
-        ("effects.facet.pattern", "random"),
-        ("depth.fit", "false"),
-        ("name", "42"),
-        ("scene.builtin", "teapot?tess=16"),
-        ("tags", "[\"a\"]"),
-    ] {
-        preset_file::set(&mut preset_file, path, value).unwrap_or_else(|e| panic!("{e}"));
-    }
-    assert_eq!(
-        (
-            preset_file.preset.name.as_str(),
-            preset_file.preset.stack.0.len()
-        ),
-        ("42", 2)
-    );
-    assert_eq!(
-        preset_file.preset.scene,
-        SceneSource::Builtin("teapot?tess=16".into())
-    );
+    let faulty = "
+facet.amount=2 ⇒ --set: facet.amount 2 lies outside 0..=1
+facet.amount=inf ⇒ facet.amount inf is not a finite number
+facet.amuont=1 ⇒ facet.amuont is unknown; did you mean \"amount\"?
+fascet.amount=1 ⇒ did you mean \"facet.amount\"?
+output.size=[1] ⇒ output.size must be a list of 2 numbers
+facet=1 ⇒ facet takes no value
+stack=[\"facet\"] ⇒ stack names facet, which is not enabled
+facet.amount= ⇒ facet.amount needs a value, as in --set facet.amount=VALUE
+camera.eye= ⇒ --set: camera.eye needs a value
+stack= ⇒ --set: stack needs a value
+";
+    all_unset(&preset_file, faulty);
+    let values = "effects.facet.pattern=random\ndepth.fit=false\nname=42\nscene.builtin=teapot?tess=16\ntags=[\"a\"]";
+    set_all(&mut preset_file, values);
+    let preset = &preset_file.preset;
+    assert_eq!((preset.name.as_str(), preset.stack.0.len()), ("42", 2));
+    assert_eq!(preset.scene, SceneSource::Builtin("teapot?tess=16".into()));
     preset_file::set(&mut preset_file, "camera.orthographic_height_m", "3").unwrap();
     preset_file::unset(&mut preset_file, "camera.orthographic_height_m").unwrap();
     assert_eq!(preset_file.preset.camera, Some(Camera::default()));
@@ -474,28 +388,11 @@ fn an_edit_of_one_value_neither_prints_nor_parses_a_whole_preset() {
     // The text of an effect that only a newer program knows counts for the order all the same.
     let mut preset_file =
         parse("schema = 2\n[effects.facet]\n[effects.lambert]\n[effects.later]\n");
-    preset_file::set(
+    set_all(
         &mut preset_file,
-        "stack",
-        "[\"lambert\", \"later\", \"facet\"]",
-    )
-    .unwrap();
-    assert_eq!(
-        preset_file
-            .preset
-            .stack
-            .0
-            .iter()
-            .map(|enabled| enabled.effect.name.as_str())
-            .collect::<Vec<_>>(),
-        ["lambert", "facet"]
+        "stack=[\"lambert\", \"later\", \"facet\"]",
     );
-    assert!(
-        preset_file::set(
-            &mut preset_file,
-            "stack",
-            "[\"lambert\", \"never\", \"facet\"]"
-        )
-        .is_err()
-    );
+    assert_eq!(stack_names(&preset_file), ["lambert", "facet"]);
+    let unknown = "stack=[\"lambert\", \"never\", \"facet\"] ⇒ never";
+    all_unset(&preset_file, unknown);
 }

@@ -144,10 +144,8 @@ struct Entry {
 
 /// Measures every combination of options on the chosen axes, held against `reference`. Ended early
 /// by `watch`, it returns what has been timed so far.
-///
-/// # Errors
-/// When the device is lost or the scene does not fit. What a combination cannot draw becomes its
-/// row's note.
+/// Errors: when the device is lost or the scene does not fit. What a combination cannot draw
+/// becomes its row's note.
 pub async fn trade(
     gpu: &Arc<Gpu>,
     preset: &Preset,

@@ -113,9 +113,6 @@ pub fn read<'a>(
 }
 
 /// Refuses an attribute that no parameter can have.
-///
-/// # Errors
-/// With the closest name.
 pub fn check_name(text: &Text<'_>, attribute: &Attribute<'_>) -> Result<(), EffectError> {
     if NAMES.contains(&attribute.name) {
         return Ok(());

@@ -67,7 +67,7 @@ fn check_brackets(text: &Text<'_>, tokens: &[Token<'_>]) -> Result<(), EffectErr
     let mut levels = vec![Level::default()];
     let mut before = "";
     for (index, token) in tokens.iter().enumerate() {
-        let error = |message: String| Err(text.error(token.offset, token.text.len(), message));
+        let error = |message: String| Err(text.at(token, message));
         let level = levels.last_mut().expect("the file itself is a level");
         if before == "}" && token.text != "else" {
             level.branches = 0;
@@ -176,11 +176,7 @@ fn check_arrays(text: &Text<'_>, tokens: &[Token<'_>]) -> Result<(), EffectError
         }
         let closes = tokens.get(at).is_some_and(|token| token.text == ">");
         if !closes {
-            return Err(text.error(
-                token.offset,
-                token.text.len(),
-                "the < of this array type is not closed",
-            ));
+            return Err(text.at(token, "the < of this array type is not closed"));
         }
         // WGSL allows a comma at the end.
         let length = comma.map(|comma| match &tokens[comma + 1..at] {
@@ -196,13 +192,12 @@ fn check_arrays(text: &Text<'_>, tokens: &[Token<'_>]) -> Result<(), EffectError
             let message = format!(
                 "the length of an array is a whole number from 1 to {MAX_ELEMENTS}, or a const that is declared as one"
             );
-            return Err(text.error(place.offset, place.text.len(), message));
+            return Err(text.at(place, message));
         }
         // Nested arrays multiply, and naga reads their types one inside the other.
         if (0..MAX_ARRAYS).all(|level| next(2 * level) == "array" && next(2 * level + 1) == "<") {
-            return Err(text.error(
-                token.offset,
-                token.text.len(),
+            return Err(text.at(
+                token,
                 format!("fewer than {MAX_ARRAYS} arrays may stand inside each other"),
             ));
         }

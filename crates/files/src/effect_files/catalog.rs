@@ -171,9 +171,6 @@ impl Catalog {
     }
 
     /// Adds the text of an effect that came inside a preset.
-    ///
-    /// # Errors
-    /// What is wrong with the text.
     pub fn add_text(&mut self, stem: &str, written: &str) -> Result<(), EffectError> {
         let read = read(&format!("{stem}.wgsl"), stem, written);
         let error = read.clone().map(drop);
@@ -267,9 +264,6 @@ impl Catalog {
     }
 
     /// The effect called `name`; none if there is no such effect.
-    ///
-    /// # Errors
-    /// What is wrong with its file.
     pub fn find(&self, name: &str) -> Result<Option<&Arc<Effect>>, &EffectError> {
         match Effect::find(name) {
             Some(effect) => Ok(Some(effect)),

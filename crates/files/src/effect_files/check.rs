@@ -390,10 +390,7 @@ fn of_link(parts: Parts<'_>, error: &LinkError) -> EffectError {
                 .tokens
                 .iter()
                 .find(|token| token.offset >= begin && token.text == *name);
-            token.map_or_else(
-                || text.whole(&message),
-                |token| text.error(token.offset, token.text.len(), &message),
-            )
+            text.at_any(token, message)
         }
         other => text.whole(in_names_of_author(stem, declaration, &other.to_string())),
     }

@@ -1,7 +1,7 @@
 //! Declarations: what an effect file declares at module scope, which of its functions are hooks,
 //! and what it may not contain.
 
-use std::collections::BTreeSet;
+use std::{collections::BTreeSet, ops::Range};
 
 use super::{
     attributes::{self, Attribute},
@@ -108,202 +108,229 @@ pub fn read<'a>(text: &Text<'a>, stem: &str) -> Result<Declaration<'a>, EffectEr
     let tokens = tokens(text.text);
     bounds::check(text, &tokens)?;
     let uses = uses(text)?;
-    let (mut structs, mut functions, mut declared) = (Vec::new(), Vec::new(), Vec::new());
-    let (mut of_pass, mut attributes) = (OfPass::default(), Vec::new());
-    let mut at = 0;
-    while at < tokens.len() {
-        let token = tokens[at];
-        let refuse = |message: &str| Err(text.error(token.offset, token.text.len(), message));
-        let name = tokens.get(at + 1).copied().filter(Token::is_name);
-        let opening = tokens.get(at + 2).map_or("", |token| token.text);
-        match (token.text, name) {
-            (";", _) => at += 1,
-            ("struct", Some(name)) => {
-                if opening != "{" {
-                    return Err(text.error(
-                        name.offset,
-                        name.text.len(),
-                        format!(
-                            "the struct {0} has no members; write struct {0} {{ … }}",
-                            name.text
-                        ),
-                    ));
-                }
-                declared.push(name);
-                structs.push((name, at + 2));
-                at = closing(&tokens, at + 2) + 1;
-            }
-            ("fn", Some(name)) => {
-                let body = match opening {
-                    "(" => (closing(&tokens, at + 2)..tokens.len())
-                        .find(|&index| ["{", ";", "fn", "struct"].contains(&tokens[index].text)),
-                    _ => None,
-                };
-                let Some(body) = body.filter(|&body| tokens[body].text == "{") else {
-                    let message = format!(
-                        "the function {0} is incomplete; write fn {0}(parameters) -> type {{ … }}",
-                        name.text
-                    );
-                    return Err(text.error(name.offset, name.text.len(), message));
-                };
-                declared.push(name);
-                functions.push(Function {
-                    of_pass: std::mem::take(&mut of_pass),
-                    ..function(text, &tokens, at, name, body)
-                });
-                at = closing(&tokens, body) + 1;
-            }
-            ("const" | "alias", Some(name)) => {
-                declared.push(name);
-                at = end_of_statement(text, &tokens, at)?;
-            }
-            ("const_assert", _) => at = end_of_statement(text, &tokens, at)?,
-            ("struct" | "fn" | "const" | "alias", None) => {
-                return refuse(&format!("{} needs a name after it", token.text));
-            }
-            ("var", _) => {
-                return refuse(
-                    "an effect declares no variable at module scope; its parameters are the members of its struct",
-                );
-            }
-            ("override", _) => {
-                return refuse("an effect declares no override; use const, or a parameter");
-            }
-            ("enable" | "requires" | "diagnostic", _) => {
-                return refuse("an effect file has no directives of WGSL; remove this one");
-            }
-            ("@", Some(name)) if ["pass", "kept"].contains(&name.text) => {
-                let (attribute, next) = attributes::read(text, &tokens, at)?;
-                match attribute.name {
-                    "pass" => of_pass.scale = Some(pass_scale(text, &attribute)?),
-                    _ => of_pass.kept = Some(kept_frames(text, &attribute)?),
-                }
-                if tokens
-                    .get(next)
-                    .is_none_or(|token| !["fn", "@"].contains(&token.text))
-                {
-                    let message = format!("@{} stands before the fn of a pass", name.text);
-                    return Err(attribute.error(text, message));
-                }
-                attributes.push(attribute.begin..attribute.end);
-                at = next;
-            }
-            ("@", _) => {
-                return refuse(
-                    "attributes belong to the parameters of an effect; an effect has no entry point and no binding",
-                );
-            }
-            _ => {
-                return refuse(&format!(
-                    "expected struct, fn, const or alias at the start of a declaration, and found {}",
-                    token.text
-                ));
-            }
-        }
-    }
-    words::check_declared(text, &declared)?;
-    words::refuse(text, &tokens, &declared)?;
-    let (hooks, passes, struct_name) = hooks(text, &functions)?;
-    let Some((_, open)) = structs
-        .iter()
-        .find(|(name, _)| name.text == struct_name.text)
-    else {
+    let scope = module_scope(text, &tokens)?;
+    words::check_declared(text, &scope.names)?;
+    words::refuse(text, &tokens, &scope.names)?;
+    let (hooks, passes, struct_name) = hooks(text, &scope.functions)?;
+    let mut structs = scope.structs.iter();
+    let Some((_, open)) = structs.find(|(name, _)| name.text == struct_name.text) else {
         let message = format!(
             "the hook takes {0}, which is no struct of this file; write struct {0} {{ … }} with the parameters",
             struct_name.text
         );
-        return Err(text.error(struct_name.offset, struct_name.text.len(), message));
+        return Err(text.at(struct_name, message));
     };
     let mut parameters = parameters::read(text, &tokens, *open)?;
-    parameters.attributes.extend(attributes);
-    let mut uses = uses;
-    if let Some(image) = parameters.images.first() {
-        if hooks.vertex.is_some() || hooks.sample.is_some() {
-            let message = format!(
-                "{} is a picture, which vertices and samples cannot read; put their hooks into a file of their own",
-                image.member
-            );
-            return Err(text.error(image.named.start, image.named.len(), message));
-        }
-        if !uses.iter().any(|used| used == "lib/image_file") {
-            uses.push("lib/image_file".into());
-        }
-    } else if uses.iter().any(|used| used == "lib/image_file") {
-        let message = "lib/image_file reads pictures, and no parameter is one; declare one, for instance @image(\"paper.png\") paper: u32";
-        return Err(text.whole(message));
-    }
-    for (kind, _, file) in HOOKS {
-        let path = format!("lib/{file}");
-        if tokens.iter().any(|token| token.text == kind) && !uses.contains(&path) {
-            uses.push(path);
-        }
-        if let Some(name) = declared.iter().find(|name| name.text == kind) {
-            let message = format!("{kind} is the type of a hook; choose another name");
-            return Err(text.error(name.offset, name.text.len(), message));
-        }
-    }
-    if !passes.is_empty() {
-        if let Some(token) = tokens.iter().find(|token| OF_PIXELS.contains(&token.text)) {
-            let message = format!("{} is there in a pixel effect alone", token.text);
-            return Err(text.error(token.offset, token.text.len(), message));
-        }
-        if !uses.iter().any(|used| used == "lib/image") {
-            uses.push("lib/image".into());
-        }
-        if tokens.iter().any(|token| token.text == "image_normal") {
-            uses.push("lib/image_normal".into());
-        }
-        let reads_kept = |token: &&Token<'_>| OF_KEPT.contains(&token.text);
-        if let Some(token) = tokens.iter().find(reads_kept) {
-            if passes.iter().all(|pass| pass.kept.is_none()) {
-                let message = format!(
-                    "{} reads what a kept pass wrote in the previous frame, and no pass of this file is one; write @kept(12, 0.04) before a pass",
-                    token.text
-                );
-                return Err(text.error(token.offset, token.text.len(), message));
-            }
-            uses.push("lib/image_kept".into());
-        }
-    }
-    // The library's file for pixels reads buffers, which passes with the other hooks do not have.
-    let has_others = hooks.vertex.is_some()
-        || hooks.sample.is_some()
-        || hooks.surface.is_some()
-        || (hooks.image.is_some() && !passes.is_empty());
-    if has_others && uses.iter().any(|used| used == "lib/image") {
-        let name = functions
-            .iter()
-            .map(|function| function.name)
-            .find(|name| hooks.image.as_deref() == Some(name.text));
-        let message = "only an effect with no other hook reads the picture; put the hook of Pixel, or the passes, into a file of their own";
-        return Err(name.map_or_else(
-            || text.whole(message),
-            |name| text.error(name.offset, name.text.len(), message),
-        ));
-    }
+    parameters
+        .attributes
+        .extend(scope.attributes.iter().cloned());
     let constants = parameters::constants(text, stem, &parameters)?;
-    if let Some(name) = declared.iter().find(|name| constants.contains(name.text)) {
-        let message = format!(
-            "{} is the constant of a choice of this effect; choose another name",
-            name.text
-        );
-        return Err(text.error(name.offset, name.text.len(), message));
-    }
-    let declared = constants
-        .into_iter()
-        .chain(declared.iter().map(|name| name.text.to_owned()))
-        .collect();
-    let about = about(text.text);
-    Ok(Declaration {
-        about,
+    let mut declaration = Declaration {
+        about: about(text.text),
         tokens,
         struct_name: struct_name.text,
         parameters,
         hooks,
         passes,
-        declared,
+        declared: BTreeSet::new(),
         uses,
-    })
+    };
+    declaration.use_library(text, &scope)?;
+    for name in &scope.names {
+        if constants.contains(name.text) {
+            let message = format!(
+                "{} is the constant of a choice of this effect; choose another name",
+                name.text
+            );
+            return Err(text.at(name, message));
+        }
+    }
+    let names = scope.names.iter().map(|name| name.text.to_owned());
+    declaration.declared = constants.into_iter().chain(names).collect();
+    Ok(declaration)
+}
+
+/// What stands at module scope.
+#[derive(Default)]
+struct Scope<'a> {
+    /// Everything that is declared.
+    names: Vec<Token<'a>>,
+    /// Names of structs, with the index of the opening brace.
+    structs: Vec<(Token<'a>, usize)>,
+    functions: Vec<Function<'a>>,
+    /// Byte ranges of the attributes of passes.
+    attributes: Vec<Range<usize>>,
+}
+
+fn module_scope<'a>(text: &Text<'a>, tokens: &[Token<'a>]) -> Result<Scope<'a>, EffectError> {
+    let mut scope = Scope::default();
+    let mut of_pass = OfPass::default();
+    let mut at = 0;
+    while at < tokens.len() {
+        let token = tokens[at];
+        let name = tokens.get(at + 1).copied().filter(Token::is_name);
+        let opening = tokens.get(at + 2).map_or("", |token| token.text);
+        let refused = match (token.text, name) {
+            (";", _) => {
+                at += 1;
+                continue;
+            }
+            ("struct", Some(name)) => {
+                if opening != "{" {
+                    let message = format!(
+                        "the struct {0} has no members; write struct {0} {{ … }}",
+                        name.text
+                    );
+                    return Err(text.at(name, message));
+                }
+                scope.names.push(name);
+                scope.structs.push((name, at + 2));
+                at = closing(tokens, at + 2) + 1;
+                continue;
+            }
+            ("fn", Some(name)) => {
+                let ends = ["{", ";", "fn", "struct"];
+                let body = (opening == "(").then(|| {
+                    (closing(tokens, at + 2)..tokens.len())
+                        .find(|&index| ends.contains(&tokens[index].text))
+                });
+                let Some(body) = body.flatten().filter(|&body| tokens[body].text == "{") else {
+                    let message = format!(
+                        "the function {0} is incomplete; write fn {0}(parameters) -> type {{ … }}",
+                        name.text
+                    );
+                    return Err(text.at(name, message));
+                };
+                scope.names.push(name);
+                scope.functions.push(Function {
+                    of_pass: std::mem::take(&mut of_pass),
+                    ..function(text, tokens, at, name, body)
+                });
+                at = closing(tokens, body) + 1;
+                continue;
+            }
+            ("const" | "alias", Some(name)) => {
+                scope.names.push(name);
+                at = end_of_statement(text, tokens, at)?;
+                continue;
+            }
+            ("const_assert", _) => {
+                at = end_of_statement(text, tokens, at)?;
+                continue;
+            }
+            ("@", Some(name)) if ["pass", "kept"].contains(&name.text) => {
+                let (attribute, next) = attributes::read(text, tokens, at)?;
+                match attribute.name {
+                    "pass" => of_pass.scale = Some(pass_scale(text, &attribute)?),
+                    _ => of_pass.kept = Some(kept_frames(text, &attribute)?),
+                }
+                let follows = tokens.get(next).map_or("", |token| token.text);
+                if !["fn", "@"].contains(&follows) {
+                    let message = format!("@{} stands before the fn of a pass", name.text);
+                    return Err(attribute.error(text, message));
+                }
+                scope.attributes.push(attribute.begin..attribute.end);
+                at = next;
+                continue;
+            }
+            ("struct" | "fn" | "const" | "alias", None) => {
+                format!("{} needs a name after it", token.text)
+            }
+            ("var", _) => "an effect declares no variable at module scope; its parameters are the members of its struct".into(),
+            ("override", _) => "an effect declares no override; use const, or a parameter".into(),
+            ("enable" | "requires" | "diagnostic", _) => {
+                "an effect file has no directives of WGSL; remove this one".into()
+            }
+            ("@", _) => "attributes belong to the parameters of an effect; an effect has no entry point and no binding".into(),
+            _ => format!(
+                "expected struct, fn, const or alias at the start of a declaration, and found {}",
+                token.text
+            ),
+        };
+        return Err(text.at(token, refused));
+    }
+    Ok(scope)
+}
+
+impl<'a> Declaration<'a> {
+    fn find(&self, is_it: impl Fn(&str) -> bool) -> Option<Token<'a>> {
+        let mut tokens = self.tokens.iter().copied();
+        tokens.find(|token| is_it(token.text))
+    }
+
+    fn is_used(&self, path: &str) -> bool {
+        self.uses.iter().any(|used| used == path)
+    }
+
+    fn add_use(&mut self, path: &str) {
+        if !self.is_used(path) {
+            self.uses.push(path.into());
+        }
+    }
+
+    /// Adds the files of the library that hooks, passes and pictures need, and refuses those that
+    /// this effect cannot have.
+    fn use_library(&mut self, text: &Text<'a>, scope: &Scope<'a>) -> Result<(), EffectError> {
+        if let Some(image) = self.parameters.images.first() {
+            if self.hooks.vertex.is_some() || self.hooks.sample.is_some() {
+                let message = format!(
+                    "{} is a picture, which vertices and samples cannot read; put their hooks into a file of their own",
+                    image.member
+                );
+                return Err(text.error(image.named.start, image.named.len(), message));
+            }
+            self.add_use("lib/image_file");
+        } else if self.is_used("lib/image_file") {
+            let message = "lib/image_file reads pictures, and no parameter is one; declare one, for instance @image(\"paper.png\") paper: u32";
+            return Err(text.whole(message));
+        }
+        for (kind, _, file) in HOOKS {
+            if self.find(|word| word == kind).is_some() {
+                self.add_use(&format!("lib/{file}"));
+            }
+            if let Some(name) = scope.names.iter().find(|name| name.text == kind) {
+                let message = format!("{kind} is the type of a hook; choose another name");
+                return Err(text.at(name, message));
+            }
+        }
+        if !self.passes.is_empty() {
+            if let Some(token) = self.find(|word| OF_PIXELS.contains(&word)) {
+                let message = format!("{} is there in a pixel effect alone", token.text);
+                return Err(text.at(token, message));
+            }
+            self.add_use("lib/image");
+            if self.find(|word| word == "image_normal").is_some() {
+                self.uses.push("lib/image_normal".into());
+            }
+            if let Some(token) = self.find(|word| OF_KEPT.contains(&word)) {
+                if self.passes.iter().all(|pass| pass.kept.is_none()) {
+                    let message = format!(
+                        "{} reads what a kept pass wrote in the previous frame, and no pass of this file is one; write @kept(12, 0.04) before a pass",
+                        token.text
+                    );
+                    return Err(text.at(token, message));
+                }
+                self.uses.push("lib/image_kept".into());
+            }
+        }
+        // The library's file for pixels reads buffers, which passes with the other hooks do not have.
+        let HookFunctions {
+            vertex,
+            sample,
+            surface,
+            image,
+            ..
+        } = &self.hooks;
+        let has_others = [vertex, sample, surface].iter().any(|hook| hook.is_some())
+            || (image.is_some() && !self.passes.is_empty());
+        if has_others && self.is_used("lib/image") {
+            let mut names = scope.functions.iter().map(|function| function.name);
+            let name = names.find(|name| image.as_deref() == Some(name.text));
+            let message = "only an effect with no other hook reads the picture; put the hook of Pixel, or the passes, into a file of their own";
+            return Err(text.at_any(name, message));
+        }
+        Ok(())
+    }
 }
 
 /// Index behind the semicolon of the declaration at `at`.
@@ -317,7 +344,7 @@ fn end_of_statement(
     let closed = end.filter(|&end| tokens[end].text == ";");
     closed.map(|end| end + 1).ok_or_else(|| {
         let last = &tokens[end.map_or(tokens.len(), |end| end) - 1];
-        text.error(last.offset, last.text.len(), "a ; is missing after this")
+        text.at(last, "a ; is missing after this")
     })
 }
 
@@ -402,7 +429,7 @@ fn hooks<'a>(
                 "{} and {} both have the signature of the hook {}; change one of them",
                 other.name.text, function.name.text, HOOKS[hook].0
             );
-            return Err(text.error(function.name.offset, function.name.text.len(), message));
+            return Err(text.at(function.name, message));
         }
         found[hook] = Some(function);
     }
@@ -425,7 +452,7 @@ fn hooks<'a>(
                  Parameters is a struct of this file",
                 name.text
             );
-            return Err(text.error(name.offset, name.text.len(), message));
+            return Err(text.at(name, message));
         }
         let message = "no function has the signature of a hook: fn name(surface: Surface, p: Parameters) -> Surface, or the same with Vertex, \
                        with Pixel, fn name(at: ImageAt, p: Parameters) -> vec4f, or fn name(sample: Sample, p: Parameters) -> bool";
@@ -441,7 +468,7 @@ fn hooks<'a>(
             "{} takes {} and {} takes {}; all hooks of an effect take the same struct",
             first.name.text, first.parameters[1], other.name.text, other.parameters[1]
         );
-        return Err(text.error(other.name.offset, other.name.text.len(), message));
+        return Err(text.at(other.name, message));
     }
     let name = |hook: usize| found[hook].map(|function| function.name.text.to_owned());
     let hooks = HookFunctions {
@@ -498,9 +525,7 @@ fn image_passes<'a>(
     functions: &[Function<'a>],
     passes: &[&Function<'a>],
 ) -> Result<Vec<ImagePass>, EffectError> {
-    let error = |function: &Function<'_>, message: String| {
-        text.error(function.name.offset, function.name.text.len(), message)
-    };
+    let error = |function: &Function<'_>, message: String| text.at(function.name, message);
     let is_pass = |function: &&Function<'_>| {
         passes
             .iter()

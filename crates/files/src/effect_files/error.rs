@@ -1,8 +1,9 @@
 //! Errors about effect files: one sentence with file, line and column, and the line of text with a
 //! caret below it.
 
-use std::fmt;
+use std::{borrow::Borrow, fmt};
 
+use super::tokens::Token;
 use crate::params::{is_hidden, legible_line};
 
 /// A fault in an effect file.
@@ -133,6 +134,24 @@ impl Text<'_> {
             file: legible_line(self.file),
             place: Some(Place::of(self.text, offset, length)),
             message: sentence(&message.into()),
+        }
+    }
+
+    /// An error about a token.
+    pub fn at<'t>(&self, token: impl Borrow<Token<'t>>, message: impl Into<String>) -> EffectError {
+        let token = token.borrow();
+        self.error(token.offset, token.text.len(), message)
+    }
+
+    /// An error about a token, or about the file where there is none.
+    pub fn at_any<'t>(
+        &self,
+        token: Option<impl Borrow<Token<'t>>>,
+        message: impl Into<String>,
+    ) -> EffectError {
+        match token {
+            Some(token) => self.at(token, message),
+            None => self.whole(message),
         }
     }
 

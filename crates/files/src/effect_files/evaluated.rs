@@ -42,9 +42,6 @@ pub fn evaluated(library: &Library, effect: &Arc<Effect>) -> Result<Hooks, Evalu
 }
 
 /// [`evaluated`] with floats of another precision.
-///
-/// # Errors
-/// As [`evaluated`].
 pub fn evaluated_in(
     library: &Library,
     effect: &Arc<Effect>,

@@ -58,76 +58,30 @@ pub fn read(text: &Text<'_>, tokens: &[Token<'_>], open: usize) -> Result<Parame
     let mut at = open + 1;
     while at < close {
         let first = tokens[at];
-        let mut attributes: Vec<Attribute<'_>> = Vec::new();
-        while at < close && tokens[at].text == "@" {
-            let (attribute, behind) = attributes::read(text, tokens, at)?;
-            attributes::check_name(text, &attribute)?;
-            if attributes.iter().any(|other| other.name == attribute.name) {
-                return Err(attribute.error(
-                    text,
-                    format!("@{} stands twice before one parameter", attribute.name),
-                ));
-            }
-            ranges.push(attribute.begin..attribute.end);
-            attributes.push(attribute);
-            at = behind;
-        }
-        let (Some(name), Some(colon)) = (
-            tokens.get(at).filter(|token| token.is_name()),
-            tokens.get(at + 1),
-        ) else {
-            return Err(text.error(first.offset, 1, "a parameter has the form name: type"));
-        };
-        if colon.text != ":" || at + 2 >= close {
-            return Err(text.error(
-                name.offset,
-                name.text.len(),
-                format!("the parameter {} needs a type", name.text),
-            ));
-        }
-        let end = (at + 2..close)
-            .find(|&index| tokens[index].text == ",")
-            .unwrap_or(close);
-        if end == at + 2 {
-            return Err(text.error(
-                name.offset,
-                name.text.len(),
-                format!("the parameter {} needs a type", name.text),
-            ));
-        }
-        if let Some(other) =
-            (at + 2..end).find(|&index| [":", ";", "@"].contains(&tokens[index].text))
-        {
-            let token = tokens[other];
-            return Err(text.error(
-                token.offset,
-                token.text.len(),
-                format!("expected , between parameters, and found {}", token.text),
-            ));
-        }
-        check_name(text, *name)?;
-        let kind = &text.text[tokens[at + 2].offset..tokens[end - 1].end()];
-        if fields
-            .iter()
-            .any(|field: &Arc<Field>| field.name == name.text)
+        let attributes = attributes_before(text, tokens, &mut at, close)?;
+        ranges.extend(
+            attributes
+                .iter()
+                .map(|attribute| attribute.begin..attribute.end),
+        );
+        let (name, types) = name_and_type(text, tokens, first, at, close)?;
+        at = types.end + 1;
+        check_name(text, name)?;
+        let mut names = fields.iter().map(|field: &Arc<Field>| &field.name);
+        if names.any(|other| other == name.text)
             || images.iter().any(|image| image.member == name.text)
         {
-            return Err(text.error(
-                name.offset,
-                name.text.len(),
-                format!("the parameter {} is declared twice", name.text),
-            ));
+            let message = format!("the parameter {} is declared twice", name.text);
+            return Err(text.at(name, message));
         }
         if fields.len() == MAX_MEMBERS {
-            return Err(text.error(
-                name.offset,
-                name.text.len(),
-                format!("an effect has at most {MAX_MEMBERS} parameters"),
-            ));
+            let message = format!("an effect has at most {MAX_MEMBERS} parameters");
+            return Err(text.at(name, message));
         }
+        let kind = &text.text[tokens[types.start].offset..tokens[types.end - 1].end()];
         let member = Member {
             text,
-            name: *name,
+            name,
             kind,
             attributes: &attributes,
         };
@@ -139,7 +93,6 @@ pub fn read(text: &Text<'_>, tokens: &[Token<'_>], open: usize) -> Result<Parame
                 named,
             });
             defaults.push(images.len() as u32 - 1);
-            at = end + 1;
             continue;
         }
         let (param, wgsl, numbers) =
@@ -151,7 +104,6 @@ pub fn read(text: &Text<'_>, tokens: &[Token<'_>], open: usize) -> Result<Parame
             .set(&mut defaults, &numbers)
             .map_err(|error| member.error(format!("the default of {}: {error}", name.text)))?;
         fields.push(Arc::new(field));
-        at = end + 1;
     }
     if fields.is_empty() && images.is_empty() {
         return Err(text.error(
@@ -172,6 +124,53 @@ pub fn read(text: &Text<'_>, tokens: &[Token<'_>], open: usize) -> Result<Parame
         defaults,
         attributes: ranges,
     })
+}
+
+/// The attributes before a member; `at` goes on to what follows them.
+fn attributes_before<'a>(
+    text: &Text<'a>,
+    tokens: &[Token<'a>],
+    at: &mut usize,
+    close: usize,
+) -> Result<Vec<Attribute<'a>>, EffectError> {
+    let mut attributes: Vec<Attribute<'_>> = Vec::new();
+    while *at < close && tokens[*at].text == "@" {
+        let (attribute, behind) = attributes::read(text, tokens, *at)?;
+        attributes::check_name(text, &attribute)?;
+        if attributes.iter().any(|other| other.name == attribute.name) {
+            let message = format!("@{} stands twice before one parameter", attribute.name);
+            return Err(attribute.error(text, message));
+        }
+        attributes.push(attribute);
+        *at = behind;
+    }
+    Ok(attributes)
+}
+
+/// The name at `at` of the member that begins with `first`, and the indices of its type, which is not empty.
+fn name_and_type<'a>(
+    text: &Text<'a>,
+    tokens: &[Token<'a>],
+    first: Token<'a>,
+    at: usize,
+    close: usize,
+) -> Result<(Token<'a>, Range<usize>), EffectError> {
+    let name = tokens.get(at).copied().filter(Token::is_name);
+    let (Some(name), Some(colon)) = (name, tokens.get(at + 1)) else {
+        return Err(text.error(first.offset, 1, "a parameter has the form name: type"));
+    };
+    let end = (at + 2..close)
+        .find(|&index| tokens[index].text == ",")
+        .unwrap_or(close);
+    if colon.text != ":" || end <= at + 2 {
+        return Err(text.at(name, format!("the parameter {} needs a type", name.text)));
+    }
+    let mut types = tokens[at + 2..end].iter();
+    if let Some(token) = types.find(|token| [":", ";", "@"].contains(&token.text)) {
+        let message = format!("expected , between parameters, and found {}", token.text);
+        return Err(text.at(token, message));
+    }
+    Ok((name, at + 2..end))
 }
 
 /// Refuses names that presets, the command line or WGSL could not write.
@@ -196,7 +195,7 @@ fn check_name(text: &Text<'_>, name: Token<'_>) -> Result<(), EffectError> {
     } else {
         return Ok(());
     };
-    Err(text.error(name.offset, name.text.len(), message))
+    Err(text.at(name, message))
 }
 
 /// The constants that the choices of an effect called `stem` are given: `INK_MODE_DOTS`.
@@ -256,8 +255,7 @@ struct Member<'a> {
 
 impl<'a> Member<'a> {
     fn error(&self, message: impl Into<String>) -> EffectError {
-        self.text
-            .error(self.name.offset, self.name.text.len(), message)
+        self.text.at(self.name, message)
     }
 
     fn attribute(&self, name: &str) -> Option<&'a Attribute<'a>> {
@@ -376,7 +374,13 @@ impl<'a> Member<'a> {
                 )));
             }
         };
-        let mut param = Param::new(self.name.text, doc, value_type.clone());
+        let param = self.with_options(Param::new(self.name.text, doc, value_type), known)?;
+        Ok((param, wgsl, default))
+    }
+
+    /// The parameter with what its other attributes say.
+    fn with_options(&self, mut param: Param, known: &[Arc<Field>]) -> Result<Param, EffectError> {
+        let value_type = param.value_type.clone();
         if self.attribute("range").is_some() {
             let (range, _) = self.range("@range(min, max, default)")?;
             self.check_ends("range", range, &param)?;
@@ -446,7 +450,7 @@ impl<'a> Member<'a> {
         if let Some(when) = self.attribute("when") {
             param.when = Some(self.condition(when, known)?);
         }
-        Ok((param, wgsl, default))
+        Ok(param)
     }
 
     /// Refuses the ends of a range that the parameter's type does not have.
@@ -480,11 +484,10 @@ impl<'a> Member<'a> {
         } else {
             return Ok(());
         };
-        let place = self.attribute(attribute);
-        Err(place.map_or_else(
-            || self.error(message.clone()),
-            |place| place.error(self.text, message.clone()),
-        ))
+        Err(match self.attribute(attribute) {
+            Some(place) => place.error(self.text, message),
+            None => self.error(message),
+        })
     }
 
     /// Range and default of `@range`.

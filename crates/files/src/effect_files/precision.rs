@@ -12,7 +12,10 @@ use super::evaluated::{EvaluatedError, evaluated_in};
 use crate::{
     effects::{
         Effect, Stack,
-        hooks::{Finish, ImageHook, Pixel, SampleHook, Surface, Vertex, VertexHook},
+        hooks::{
+            Finish, ImageHook, Picture, Pixel, Sample, SampleHook, Surface, SurfaceFunction,
+            Vertex, VertexHook,
+        },
     },
     evaluator::Precision,
     math::srgb,
@@ -193,106 +196,19 @@ impl PrecisionProbe {
             let single = evaluated_in(&Library::of_process(), effect, Precision::Single)?;
             let errors = Arc::new(Mutex::new(Errors::default()));
             let mut hooks = effect.hooks.clone();
-            if let (Some(exact), Some(single)) = (hooks.surface.clone(), single.surface) {
-                let errors = errors.clone();
-                hooks.surface = Some(Arc::new(move |s: Surface, words: &[u32]| {
-                    if is_cancelled(&errors) {
-                        return s;
-                    }
-                    let result = exact(s, words);
-                    if s.step_offset == 0.0 {
-                        let other = single(rounded(s), words);
-                        let place = Place::Pixel(s.pixel.to_array());
-                        let normal = (result.normal - other.normal).abs().max_element();
-                        let mut errors = locked(&errors);
-                        errors.record(
-                            Quantity::Color,
-                            color_error(shown(result.color), shown(other.color)),
-                            place,
-                        );
-                        // A normal is changed on purpose, or it is passed on as it came.
-                        errors.record(
-                            Quantity::Normal,
-                            if result.normal == s.normal {
-                                0.0
-                            } else {
-                                normal
-                            },
-                            place,
-                        );
-                    }
-                    result
-                }));
+            let probes = hooks.clone();
+            if let (Some(exact), Some(single)) = (probes.surface, single.surface) {
+                hooks.surface = Some(probed_surface(exact, single, errors.clone()));
             }
-            if let (Some(exact), Some(single)) = (hooks.image.clone(), single.image) {
-                let errors = errors.clone();
-                let finish =
-                    move |q: Pixel, picture: &crate::effects::hooks::Picture<'_>, words: &[u32]| {
-                        if is_cancelled(&errors) {
-                            return q;
-                        }
-                        let result = (exact.finish)(q, picture, words);
-                        if q.step_offset == 0.0 {
-                            let other = (single.finish)(
-                                Pixel {
-                                    color: q.color.as_vec4().as_dvec4(),
-                                    ..q
-                                },
-                                picture,
-                                words,
-                            );
-                            let place = Place::Pixel([f64::from(q.x) + 0.5, f64::from(q.y) + 0.5]);
-                            locked(&errors).record(
-                                Quantity::Color,
-                                color_error(result.color, other.color),
-                                place,
-                            );
-                        }
-                        result
-                    };
-                hooks.image = Some(ImageHook {
-                    finish: Arc::new(finish),
-                    ..exact
-                });
+            if let (Some(exact), Some(single)) = (probes.image, single.image) {
+                hooks.image = Some(probed_image(exact, single, errors.clone()));
             }
-            if let (Some(exact), Some(single)) = (hooks.vertex.clone(), single.vertex) {
-                let errors = errors.clone();
-                let moved = move |v: Vertex, words: &[u32]| {
-                    if is_cancelled(&errors) {
-                        return v;
-                    }
-                    let result = (exact.moved)(v, words);
-                    let other = (single.moved)(v, words);
-                    let error = (result.offset - other.offset).abs().max_element();
-                    locked(&errors).record(
-                        Quantity::Vertex,
-                        error,
-                        Place::World(result.position + result.offset),
-                    );
-                    result
-                };
-                hooks.vertex = Some(VertexHook {
-                    moved: Arc::new(moved),
-                    ..exact
-                });
+            if let (Some(exact), Some(single)) = (probes.vertex, single.vertex) {
+                hooks.vertex = Some(probed_vertex(exact, single, errors.clone()));
             }
-            if let (Some(exact), Some(single)) = (
-                hooks.sample.clone().filter(|hook| !hook.has_setup),
-                single.sample,
-            ) {
-                let errors = errors.clone();
-                let is_drawn = move |s: &crate::effects::hooks::Sample, words: &[u32]| {
-                    let result = (exact.is_drawn)(s, words);
-                    if !is_cancelled(&errors) && result != (single.is_drawn)(s, words) {
-                        let place = Place::Pixel([f64::from(s.x) + 0.5, f64::from(s.y) + 0.5]);
-                        locked(&errors).record(Quantity::Sample, 1.0, place);
-                    }
-                    result
-                };
-                hooks.sample = Some(SampleHook {
-                    is_drawn: Arc::new(is_drawn),
-                    ..exact
-                });
+            let sample = probes.sample.filter(|hook| !hook.has_setup);
+            if let (Some(exact), Some(single)) = (sample, single.sample) {
+                hooks.sample = Some(probed_sample(exact, single, errors.clone()));
             }
             Ok(Self {
                 effect: Arc::new(Effect {
@@ -304,6 +220,90 @@ impl PrecisionProbe {
             })
         })
     }
+}
+
+fn probed_surface(
+    exact: Arc<SurfaceFunction>,
+    single: Arc<SurfaceFunction>,
+    errors: Arc<Mutex<Errors>>,
+) -> Arc<SurfaceFunction> {
+    Arc::new(move |s: Surface, words: &[u32]| {
+        if is_cancelled(&errors) {
+            return s;
+        }
+        let result = exact(s, words);
+        if s.step_offset == 0.0 {
+            let other = single(rounded(s), words);
+            let place = Place::Pixel(s.pixel.to_array());
+            let color = color_error(in_picture(result.color), in_picture(other.color));
+            // A normal is changed on purpose, or it is passed on as it came.
+            let normal = match result.normal == s.normal {
+                true => 0.0,
+                false => (result.normal - other.normal).abs().max_element(),
+            };
+            let mut errors = locked(&errors);
+            errors.record(Quantity::Color, color, place);
+            errors.record(Quantity::Normal, normal, place);
+        }
+        result
+    })
+}
+
+fn probed_image(exact: ImageHook, single: ImageHook, errors: Arc<Mutex<Errors>>) -> ImageHook {
+    let finish = move |q: Pixel, picture: &Picture<'_>, words: &[u32]| {
+        if is_cancelled(&errors) {
+            return q;
+        }
+        let result = (exact.finish)(q, picture, words);
+        if q.step_offset == 0.0 {
+            let color = q.color.as_vec4().as_dvec4();
+            let other = (single.finish)(Pixel { color, ..q }, picture, words);
+            let error = color_error(result.color, other.color);
+            locked(&errors).record(Quantity::Color, error, middle(q.x, q.y));
+        }
+        result
+    };
+    ImageHook {
+        finish: Arc::new(finish),
+        ..exact
+    }
+}
+
+fn probed_vertex(exact: VertexHook, single: VertexHook, errors: Arc<Mutex<Errors>>) -> VertexHook {
+    let moved = move |v: Vertex, words: &[u32]| {
+        if is_cancelled(&errors) {
+            return v;
+        }
+        let result = (exact.moved)(v, words);
+        let other = (single.moved)(v, words);
+        let error = (result.offset - other.offset).abs().max_element();
+        let place = Place::World(result.position + result.offset);
+        locked(&errors).record(Quantity::Vertex, error, place);
+        result
+    };
+    VertexHook {
+        moved: Arc::new(moved),
+        ..exact
+    }
+}
+
+fn probed_sample(exact: SampleHook, single: SampleHook, errors: Arc<Mutex<Errors>>) -> SampleHook {
+    let is_drawn = move |s: &Sample, words: &[u32]| {
+        let result = (exact.is_drawn)(s, words);
+        if !is_cancelled(&errors) && result != (single.is_drawn)(s, words) {
+            locked(&errors).record(Quantity::Sample, 1.0, middle(s.x, s.y));
+        }
+        result
+    };
+    SampleHook {
+        is_drawn: Arc::new(is_drawn),
+        ..exact
+    }
+}
+
+/// The middle of a pixel.
+fn middle(x: impl Into<f64>, y: impl Into<f64>) -> Place {
+    Place::Pixel([x.into() + 0.5, y.into() + 0.5])
 }
 
 fn is_cancelled(errors: &Mutex<Errors>) -> bool {
@@ -345,7 +345,7 @@ pub(super) fn rounded(s: Surface) -> Surface {
 }
 
 /// A linear color as the picture holds it, before it is rounded to bytes.
-fn shown(color: DVec4) -> DVec4 {
+fn in_picture(color: DVec4) -> DVec4 {
     DVec4::new(srgb(color.x), srgb(color.y), srgb(color.z), color.w)
 }
 

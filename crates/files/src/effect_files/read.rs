@@ -95,9 +95,6 @@ pub fn stem(path: &Path) -> String {
 }
 
 /// [`read_beside`] of a text without a folder: pictures that it takes as inputs are inside it.
-///
-/// # Errors
-/// As [`read_beside`].
 pub fn read(file: &str, stem: &str, written: &str) -> Result<Arc<Effect>, EffectError> {
     read_beside(file, stem, written, None)
 }
@@ -180,10 +177,7 @@ fn read_anew(
     {
         let name = declaration.tokens.iter().find(|token| token.text == vertex);
         let message = "a vertex effect needs an f32 parameter with @unit(m): it moves a vertex by at most the sum of these lengths";
-        return Err(name.map_or_else(
-            || text.whole(message),
-            |name| text.error(name.offset, name.text.len(), message),
-        ));
+        return Err(text.at_any(name, message));
     }
     let rewritten = rewrite::rewritten(stem, written, &declaration);
     let source = Arc::new(EffectSource {
@@ -295,9 +289,6 @@ fn read_anew(
 }
 
 /// The text of a file.
-///
-/// # Errors
-/// It is not UTF-8.
 pub fn decoded(text: &Text<'_>, bytes: Vec<u8>) -> Result<String, EffectError> {
     String::from_utf8(bytes).map_err(|error| {
         let valid = error.utf8_error().valid_up_to();

@@ -24,9 +24,6 @@ pub fn is_predeclared(name: &str) -> bool {
 }
 
 /// Refuses names at module scope that mean something else, or stand there twice.
-///
-/// # Errors
-/// At the name.
 pub fn check_declared(text: &Text<'_>, declared: &[Token<'_>]) -> Result<(), EffectError> {
     let mut known = BTreeMap::new();
     for name in declared {
@@ -39,19 +36,12 @@ pub fn check_declared(text: &Text<'_>, declared: &[Token<'_>]) -> Result<(), Eff
         } else {
             continue;
         };
-        return Err(text.error(
-            name.offset,
-            name.text.len(),
-            format!("{} {reason}", name.text),
-        ));
+        return Err(text.at(name, format!("{} {reason}", name.text)));
     }
     Ok(())
 }
 
 /// Refuses what only kernels may do. Names that the file declares are its own.
-///
-/// # Errors
-/// At the word.
 pub fn refuse(
     text: &Text<'_>,
     tokens: &[Token<'_>],
@@ -90,7 +80,7 @@ pub fn refuse(
         };
         if token.text == "discard" && !is_member {
             let message = "discard: an effect removes no invocation; a function on the hook Sample returns false to leave a sample out";
-            return Err(text.error(token.offset, token.text.len(), message));
+            return Err(text.at(token, message));
         }
         let is_used = next == "(" || next == "<" || before == "<" || before == ":";
         if is_member || !is_used || declared.iter().any(|name| name.text == token.text) {
@@ -106,9 +96,8 @@ pub fn refuse(
             })
         });
         if let Some((_, what)) = word.or(begun) {
-            return Err(text.error(
-                token.offset,
-                token.text.len(),
+            return Err(text.at(
+                token,
                 format!(
                     "{}: an effect has no {what}; it is a pure function of its arguments",
                     token.text

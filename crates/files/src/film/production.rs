@@ -31,9 +31,6 @@ pub trait Painter {
     fn provenance(&self) -> Provenance;
 
     /// The picture of `preset`, at its time and of its size.
-    ///
-    /// # Errors
-    /// The picture cannot be drawn.
     fn paint(
         &mut self,
         preset: &Preset,

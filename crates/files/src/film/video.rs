@@ -162,9 +162,6 @@ impl Video {
     }
 
     /// Ends the video after its last frame.
-    ///
-    /// # Errors
-    /// As [`Self::push`], or the file cannot be given its name.
     pub fn finish(mut self, is_stopped: &dyn Fn() -> bool) -> Result<(), FilmError> {
         self.frames = None;
         let status = loop {

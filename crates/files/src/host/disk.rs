@@ -18,18 +18,12 @@ mod native {
     };
 
     /// Opens a file to be read.
-    ///
-    /// # Errors
-    /// It cannot be.
     pub fn open(path: &Path) -> io::Result<File> {
         File::open(path)
     }
 
     /// The size of a regular file, bytes; none if something else has the name. Nothing is opened,
     /// so that a pipe does not wait.
-    ///
-    /// # Errors
-    /// There is no such file.
     pub fn size_of(path: &Path) -> io::Result<Option<u64>> {
         let about = std::fs::metadata(path)?;
         Ok(about.is_file().then_some(about.len()))
@@ -41,9 +35,6 @@ mod native {
     }
 
     /// Where a path leads to through symbolic links.
-    ///
-    /// # Errors
-    /// Nothing is there.
     pub fn canonical(path: &Path) -> io::Result<PathBuf> {
         path.canonicalize()
     }

@@ -23,17 +23,11 @@ use crate::{
 };
 
 /// Loads a glTF file (`.gltf`, `.glb`, `.vrm`) within the memory budget of the process.
-///
-/// # Errors
-/// As [`load_as`].
 pub fn load(path: &Path) -> Result<Scene, LoadError> {
     load_within(path, MemoryBudget::of_process())
 }
 
 /// [`load`] within another memory budget.
-///
-/// # Errors
-/// As [`load_as`].
 pub fn load_within(path: &Path, budget: MemoryBudget) -> Result<Scene, LoadError> {
     load_as(path, budget, gltf::load_within)
 }
@@ -110,9 +104,6 @@ struct OpenFile {
 impl OpenFile {
     /// Opens a regular file of at most `most` bytes and counts them as expected. Pipes, devices and
     /// folders are refused before they are opened.
-    ///
-    /// # Errors
-    /// It is no such file.
     fn open(path: &Path, most: u64, limits: &Limits) -> Result<Self, LoadError> {
         let Some(size) = disk::size_of(path).map_err(failed)? else {
             return Err(LoadError::new("it is not a regular file"));

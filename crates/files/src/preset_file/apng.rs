@@ -80,9 +80,6 @@ impl AnimatedPng {
     }
 
     /// Adds the next frame, or first the default picture if there is one; row-major RGBA.
-    ///
-    /// # Errors
-    /// The file cannot be written.
     pub fn push(&mut self, color: &[[u8; 4]]) -> Result<(), PresetError> {
         self.writer
             .write_image_data(bytemuck::cast_slice(color))

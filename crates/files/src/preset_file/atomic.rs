@@ -176,9 +176,6 @@ impl Write for AtomicFile {
 }
 
 /// Writes `bytes` next to `path`, then renames, so that a reader sees the old file or the new one.
-///
-/// # Errors
-/// As [`AtomicFile::create`] and [`AtomicFile::commit`].
 pub fn write_atomically(path: &Path, bytes: &[u8], existing: Existing) -> Result<(), PresetError> {
     #[cfg(target_arch = "wasm32")]
     {

@@ -232,9 +232,6 @@ pub fn set(preset_file: &mut PresetFile, path: &str, value: &str) -> Result<(), 
 
 /// Puts one value back to its default, as `--unset path` does; an effect or optional section is
 /// taken out, with its keyframes.
-///
-/// # Errors
-/// An unknown path.
 pub fn unset(preset_file: &mut PresetFile, path: &str) -> Result<(), PresetError> {
     let at = Position {
         file: "--unset".into(),

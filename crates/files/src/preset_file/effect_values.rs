@@ -265,9 +265,6 @@ pub fn saved_values(folder: &Path) -> Vec<SavedValues> {
 }
 
 /// Reads a file of values.
-///
-/// # Errors
-/// As [`EffectValues::parse`], or the file cannot be read.
 pub fn load_values(path: &Path, catalog: &Catalog) -> Result<EffectValues, PresetError> {
     EffectValues::parse(&read_text(path)?, &path.display().to_string(), catalog)
 }

@@ -73,17 +73,11 @@ impl ModelFormat {
     }
 
     /// Loads a file of this format within the memory budget of the process, with its own materials.
-    ///
-    /// # Errors
-    /// As [`model::load_as`].
     pub fn load(&self, path: &Path) -> Result<Scene, LoadError> {
         self.load_variant(path, "")
     }
 
     /// [`Self::load`], with the materials of a variant where the file has one of this name.
-    ///
-    /// # Errors
-    /// As [`model::load_as`].
     pub fn load_variant(&self, path: &Path, variant: &str) -> Result<Scene, LoadError> {
         let budget = MemoryBudget::of_process();
         match self.reader {

@@ -46,9 +46,6 @@ pub enum FrameStatus {
 
 /// Is the file at `path` the picture with this `size` (width, height) and `fingerprint`? A pipe or
 /// device is never opened.
-///
-/// # Errors
-/// The file cannot be read.
 pub fn frame_status(
     path: &Path,
     size: [u32; 2],

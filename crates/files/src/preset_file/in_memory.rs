@@ -20,9 +20,6 @@ pub struct InMemory {
 impl InMemory {
     /// Begins a file that will be called `path`. A page replaces nothing: what it writes is a
     /// download.
-    ///
-    /// # Errors
-    /// None.
     pub fn create(path: &Path, _: Existing) -> Result<Self, PresetError> {
         Ok(Self {
             path: path.to_owned(),
@@ -43,17 +40,11 @@ impl InMemory {
     }
 
     /// A second handle to the file, for a writer that owns one.
-    ///
-    /// # Errors
-    /// None.
     pub fn handle(&self) -> io::Result<Self> {
         Ok(self.clone())
     }
 
     /// Gives the file its name.
-    ///
-    /// # Errors
-    /// The page does not take it.
     pub fn commit(self) -> Result<(), PresetError> {
         disk::write(&self.path, &self.bytes()).map_err(|error| self.failed(error))
     }

@@ -15,9 +15,6 @@ use crate::{effect_files::Catalog, host::disk, params::legible_line};
 pub const MAX_BYTES: usize = 1 << 20;
 
 /// Reads the text of a preset called `id`; errors and warnings name `<id>.toml`.
-///
-/// # Errors
-/// As [`parse_file`].
 pub fn parse(text: &str, id: &str) -> Result<PresetFile, PresetError> {
     parse_file(text, id, &format!("{id}.toml"))
 }
@@ -31,9 +28,6 @@ pub fn parse_file(text: &str, id: &str, file: &str) -> Result<PresetFile, Preset
 }
 
 /// [`parse_file`] for a preset that may use the effects of `catalog`.
-///
-/// # Errors
-/// As [`parse_file`], or an effect whose file is faulty.
 pub fn parse_with(
     text: &str,
     id: &str,
@@ -72,9 +66,6 @@ pub fn load(path: &Path) -> Result<PresetFile, PresetError> {
 
 /// [`load`] for a preset that may use the effects of `catalog`, and those in the folder `effects`
 /// beside it.
-///
-/// # Errors
-/// As [`load`], or an effect whose file is faulty.
 pub fn load_with(path: &Path, catalog: &Catalog) -> Result<PresetFile, PresetError> {
     let mut catalog = catalog.clone();
     catalog.add_folder(&path.with_file_name("effects"));

@@ -136,9 +136,6 @@ pub fn png_pixels(path: &Path) -> Result<(Vec<[u8; 4]>, [u32; 2]), PresetError> 
 }
 
 /// [`png_pixels`] of the bytes of a file, which errors call `file`.
-///
-/// # Errors
-/// No PNG, or a larger one.
 pub fn pixels_of_png(bytes: &[u8], file: &str) -> Result<(Vec<[u8; 4]>, [u32; 2]), PresetError> {
     let failed = |reason: String| PresetError::Read {
         file: file.into(),

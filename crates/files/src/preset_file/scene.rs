@@ -44,9 +44,6 @@ pub fn load_scene(preset: &Preset, preset_path: Option<&Path>) -> Result<Arc<Sce
 }
 
 /// [`load_scene`], with one path of the preset for its model and one for its picture.
-///
-/// # Errors
-/// As [`load_scene`].
 pub fn load_scene_beside(
     preset: &Preset,
     [for_model, for_picture]: [Option<&Path>; 2],

@@ -55,9 +55,6 @@ impl Plan {
     }
 
     /// The plan of the same picture under another request.
-    ///
-    /// # Errors
-    /// As [`plan`](super::plan).
     pub fn under(
         &self,
         stack: &Stack,

@@ -58,7 +58,7 @@ const DISC_ROWS: u64 = 66;
 
 /// Invocations over which a card divides the discs of few triangles. More of them spare it little
 /// of its waiting, and those that find no row in a small disc cost a few microseconds
-/// (docs/decisions/013-discs-by-rows.md).
+/// (docs/decisions/README.md, 013).
 const DISC_INVOCATIONS: u64 = 1 << 18;
 
 /// Among how many invocations the rows of the discs of each of `triangles` are divided: where they

@@ -61,9 +61,6 @@ pub struct Plan {
 }
 
 /// Chooses the kernel. Formats no text: [`Plan::reasons`] does, when asked.
-///
-/// # Errors
-/// When the request pins an option that adapter, scene or stack cannot have.
 pub fn plan(
     needs: &Arc<Needs>,
     stack: &StackTraits,
@@ -164,9 +161,6 @@ impl Planner {
     const KEPT: usize = 4;
 
     /// The plan of a picture; the same [`Arc`] while nothing that it depends on has changed.
-    ///
-    /// # Errors
-    /// As [`plan`], and when two effects take one slot.
     pub fn plan(
         &mut self,
         needs: &Arc<Needs>,

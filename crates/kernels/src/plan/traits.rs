@@ -48,8 +48,6 @@ pub struct InexactEffect {
 }
 
 impl StackTraits {
-    /// # Errors
-    /// When two effects take one slot.
     pub fn of(stack: &Stack, request: &AccuracyRequest) -> Result<Self, PlanError> {
         stack.check()?;
         let is_baked = request.pins.option() == Some(Parameters::Baked);

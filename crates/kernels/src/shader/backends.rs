@@ -16,9 +16,7 @@ pub struct Untranslatable {
 
 /// Writes a validated module, all its entry points and functions, in every language. A module has
 /// no overrides left.
-///
-/// # Errors
-/// The first interface that cannot be given it. A panic of naga's counts as such an error.
+/// Errors: the first interface that cannot be given it. A panic of naga's counts as such an error.
 #[cfg(not(target_arch = "wasm32"))]
 pub fn translate(module: &Module, info: &ModuleInfo) -> Result<(), Untranslatable> {
     type Write = fn(&Module, &ModuleInfo) -> Result<(), String>;
@@ -47,9 +45,6 @@ pub struct Panicked;
 
 /// Does `work`, which reads what anyone may have written with code that is not ours, and catches
 /// its panic without the message that a panic prints. In a page a panic ends the program.
-///
-/// # Errors
-/// It panicked.
 #[cfg(not(target_arch = "wasm32"))]
 pub fn caught<T>(work: impl FnOnce() -> T) -> Result<T, Panicked> {
     use std::{
@@ -76,9 +71,7 @@ pub fn caught<T>(work: impl FnOnce() -> T) -> Result<T, Panicked> {
 }
 
 /// Does `work`.
-///
-/// # Errors
-/// Never: in a page a panic ends the program.
+/// Errors: never: in a page a panic ends the program.
 #[cfg(target_arch = "wasm32")]
 pub fn caught<T>(work: impl FnOnce() -> T) -> Result<T, Panicked> {
     Ok(work())

@@ -169,10 +169,6 @@ fn file(library: &Library, name: &str) -> Option<Arc<File>> {
 
 /// Puts together the module of `shaders/<root>.wgsl` for `key`. `variants` gives the section that
 /// the key chooses in each file of `shaders/variants`; steps have as many entries as are chosen.
-///
-/// # Errors
-/// When a file is missing, names what no file that it uses declares, or does not define what its
-/// interface declares.
 pub fn link(
     library: &Library,
     root: &str,
@@ -184,9 +180,6 @@ pub fn link(
 
 /// Puts together the module of one effect alone: its functions and what they use, with constants in
 /// place of overrides.
-///
-/// # Errors
-/// As [`link`].
 pub fn link_effect(library: &Library, effect: &Arc<Effect>) -> Result<Linked, LinkError> {
     let key = KernelKey::complete(Fetch::Indexed, Visibility::Split32, vec![effect.clone()]);
     let variants = key.variants(Pass::Resolve);

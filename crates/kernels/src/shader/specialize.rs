@@ -13,9 +13,7 @@ use super::{
 /// The text with a constant in place of every override: with the value that `constants` gives, else
 /// with the default. Lines keep their numbers. `overrides` are the names that the text declares, as
 /// [`Reflected::overrides`] has them.
-///
-/// # Errors
-/// An override is not written as `override NAME: TYPE = DEFAULT;` on a line of its own.
+/// Errors: an override is not written as `override NAME: TYPE = DEFAULT;` on a line of its own.
 pub fn specialized(
     linked: &Linked,
     overrides: &[String],

@@ -150,9 +150,6 @@ impl Stack {
     }
 
     /// The draws of `scene` as `view` sees it, with the scopes of this stack.
-    ///
-    /// # Errors
-    /// As [`draws`](crate::scene::draw::draws).
     pub fn draws(&self, scene: &Scene, view: &View) -> Result<Vec<Draw>, DrawError> {
         let mut draws = scoped_draws(scene, view, &self.scopes())?;
         let glass = self.glass();
@@ -435,9 +432,7 @@ impl Stack {
     }
 
     /// Limits an effect to parts of the scene; enables it if it is off.
-    ///
-    /// # Errors
-    /// Too many effects have a scope; then nothing is changed.
+    /// Errors: too many effects have a scope; then nothing is changed.
     pub fn limit(&mut self, effect: &Arc<Effect>, on: Scope) -> Result<(), Conflict> {
         let mut limited = self.clone();
         limited.enable(effect).on = on;
@@ -484,9 +479,7 @@ impl Stack {
 
     /// Checks that no two effects take one slot or follow earlier frames, that at most
     /// [`MAX_SCOPES`] effects have a scope, and that there are at most [`MAX_IMAGE_PASSES`].
-    ///
-    /// # Errors
-    /// Names the effects.
+    /// Errors: names the effects.
     pub fn check(&self) -> Result<(), Conflict> {
         let scoped: Vec<&EnabledEffect> = self
             .0

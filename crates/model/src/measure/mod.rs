@@ -260,9 +260,7 @@ impl Budget {
 
 impl ErrorReport {
     /// Passes if everything that must be exact is, and the rest is within `budget`.
-    ///
-    /// # Errors
-    /// A phrase for each limit that is exceeded, separated by semicolons.
+    /// Errors: a phrase for each limit that is exceeded, separated by semicolons.
     pub fn within(&self, budget: &Budget) -> Result<(), String> {
         let most = [
             (

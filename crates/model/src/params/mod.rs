@@ -107,9 +107,7 @@ impl Param {
     }
 
     /// Does `value` have the parameter's type, and lie inside its hard range?
-    ///
-    /// # Errors
-    /// Completes a sentence that begins with the parameter's name.
+    /// Errors: completes a sentence that begins with the parameter's name.
     pub fn check(&self, value: &Value) -> Result<(), ValueError> {
         self.value_type.check(value, self.hard)
     }
@@ -257,9 +255,7 @@ impl Field {
     }
 
     /// Writes a value.
-    ///
-    /// # Errors
-    /// The value has another type or lies outside the hard range; then nothing is changed.
+    /// Errors: the value has another type or lies outside the hard range; then nothing is changed.
     pub fn set_value(&self, words: &mut [u32], value: &Value) -> Result<(), ValueError> {
         self.check(value)?;
         let range = self.words_range();
@@ -274,9 +270,6 @@ impl Field {
     }
 
     /// Writes a value by its components.
-    ///
-    /// # Errors
-    /// As [`Field::set_value`].
     pub fn set(&self, words: &mut [u32], components: &[f64]) -> Result<(), ValueError> {
         // A flag or choice takes one whole number inside its range, before it becomes a value of
         // its type.

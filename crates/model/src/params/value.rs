@@ -117,9 +117,7 @@ impl ValueType {
 
     /// Does `value` have this type and lie inside `range`? A value of an f32 type is compared as
     /// f32: a bound such as 0.1 is no f32, and its own rounding is not outside.
-    ///
-    /// # Errors
-    /// Completes a sentence that begins with the parameter's name.
+    /// Errors: completes a sentence that begins with the parameter's name.
     pub fn check(&self, value: &Value, range: [f64; 2]) -> Result<(), ValueError> {
         match (self, value) {
             (Self::Bool, Value::Bool(_)) => Ok(()),
@@ -263,8 +261,6 @@ pub fn format_number(number: f64) -> String {
 pub trait Stored: Sized {
     fn to_value(&self) -> Value;
 
-    /// # Errors
-    /// The value has another type.
     fn from_value(value: &Value) -> Result<Self, ValueError>;
 }
 

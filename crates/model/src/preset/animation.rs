@@ -124,9 +124,7 @@ impl fmt::Debug for Track {
 
 impl Track {
     /// A track with these keyframes, in any order.
-    ///
-    /// # Errors
-    /// No keyframe or more than [`MAX_KEYFRAMES`]; a time that occurs twice or lies outside
+    /// Errors: no keyframe or more than [`MAX_KEYFRAMES`]; a time that occurs twice or lies outside
     /// ±[`MAX_TIME_S`]; a value that the field refuses; an easing other than hold for a field
     /// without fractions.
     pub fn new(
@@ -182,9 +180,7 @@ impl Track {
     }
 
     /// Adds a keyframe, or replaces the one at its time.
-    ///
-    /// # Errors
-    /// As [`Track::new`]; then nothing is changed.
+    /// Errors: as [`Track::new`]; then nothing is changed.
     pub fn set(&mut self, key: Keyframe) -> Result<(), KeyframeError> {
         let key = checked(&self.effect, &self.field, key)?;
         match self.at(key.time_s) {

@@ -17,9 +17,7 @@ pub struct Bookmark {
 }
 
 /// Is this a name for a bookmark?
-///
-/// # Errors
-/// What a name must be, in words that follow the name.
+/// Errors: what a name must be, in words that follow the name.
 pub fn check_bookmark_name(name: &str) -> Result<(), String> {
     let length = name.chars().count();
     if name.trim() == name
@@ -35,9 +33,7 @@ pub fn check_bookmark_name(name: &str) -> Result<(), String> {
 
 impl Preset {
     /// The camera of a bookmark.
-    ///
-    /// # Errors
-    /// There is none of this name: in a sentence that names those that are there.
+    /// Errors: there is none of this name: in a sentence that names those that are there.
     pub fn bookmark(&self, name: &str) -> Result<Camera, String> {
         let found = self.bookmarks.iter().find(|mark| mark.name == name);
         found.map(|mark| mark.camera).ok_or_else(|| {
@@ -53,9 +49,7 @@ impl Preset {
     }
 
     /// Keeps `camera` as the last bookmark, `view 1` or the first such name that is free.
-    ///
-    /// # Errors
-    /// The preset has [`MAX_BOOKMARKS`].
+    /// Errors: the preset has [`MAX_BOOKMARKS`].
     pub fn add_bookmark(&mut self, camera: Camera) -> Result<(), String> {
         if self.bookmarks.len() >= MAX_BOOKMARKS {
             return Err(format!(
@@ -72,9 +66,7 @@ impl Preset {
     }
 
     /// Gives a bookmark another name; one that is not there stays away.
-    ///
-    /// # Errors
-    /// The name is none for a bookmark, or another bookmark has it: in a sentence.
+    /// Errors: the name is none for a bookmark, or another bookmark has it: in a sentence.
     pub fn rename_bookmark(&mut self, from: &str, to: &str) -> Result<(), String> {
         check_bookmark_name(to).map_err(|reason| format!("The name of a bookmark {reason}"))?;
         if from != to && self.bookmarks.iter().any(|mark| mark.name == to) {

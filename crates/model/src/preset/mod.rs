@@ -115,9 +115,7 @@ impl ClipPlayback {
     }
 
     /// Does the scene have the clips?
-    ///
-    /// # Errors
-    /// The first clip that is missing.
+    /// Errors: the first clip that is missing.
     pub fn check(&self, scene: &Scene) -> Result<(), MissingInScene> {
         for (key, name) in [
             ("scene.clip", &self.clip),
@@ -390,9 +388,7 @@ impl Preset {
     }
 
     /// Does `scene` have the variant, the clips and the camera that the preset names?
-    ///
-    /// # Errors
-    /// The first that is missing.
+    /// Errors: the first that is missing.
     pub fn check(&self, scene: &Scene) -> Result<(), MissingInScene> {
         let variant = &self.parts.variant;
         if !variant.is_empty() && scene.variant(variant).is_none() {

@@ -4,10 +4,8 @@
 const FARTHEST_M: f32 = 1e9;
 
 /// Reads a polyline; an empty text has no points.
-///
-/// # Errors
-/// The first point that is malformed or repeats the one before. Completes a sentence that begins
-/// with the setting's name.
+/// Errors: the first point that is malformed or repeats the one before. Completes a sentence that
+/// begins with the setting's name.
 pub fn parse(text: &str) -> Result<Vec<[f32; 3]>, String> {
     let mut points: Vec<[f32; 3]> = Vec::new();
     for written in text

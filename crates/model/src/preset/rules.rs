@@ -50,9 +50,7 @@ pub fn is_file(path: &Value) -> Result<(), String> {
 impl Preset {
     /// Is the budget of the test one that a file may state: explained where it is above the
     /// default, and without wrong triangles where every option is exact?
-    ///
-    /// # Errors
-    /// The key that is at fault, and the rest of a sentence that begins with it.
+    /// Errors: the key that is at fault, and the rest of a sentence that begins with it.
     pub fn check_budget(&self) -> Result<(), [&'static str; 2]> {
         let (Some(test), default) = (&self.test, GoldenTest::default()) else {
             return Ok(());

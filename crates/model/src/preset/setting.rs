@@ -66,10 +66,8 @@ impl Setting {
     }
 
     /// Gives the setting a value.
-    ///
-    /// # Errors
-    /// The value has another type, lies outside the range or breaks the setting's rule; then
-    /// nothing is changed.
+    /// Errors: the value has another type, lies outside the range or breaks the setting's rule;
+    /// then nothing is changed.
     pub fn set(&self, preset: &mut Preset, value: &Value) -> Result<(), ValueError> {
         self.check(value)?;
         match (self.storage, value) {
@@ -83,9 +81,6 @@ impl Setting {
     }
 
     /// Would [`Setting::set`] take this value?
-    ///
-    /// # Errors
-    /// As [`Setting::set`].
     pub fn check(&self, value: &Value) -> Result<(), ValueError> {
         self.param.check(value)?;
         self.rule

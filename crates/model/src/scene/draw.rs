@@ -175,18 +175,13 @@ pub const MAX_TRIANGLES: u64 = (1 << 30) - 2;
 pub const MANY_DRAWS: usize = 1024;
 
 /// The draws of `scene` as `view` sees it, in instance order, for a stack without scopes.
-///
-/// # Errors
-/// If there are more than [`MAX_TRIANGLES`] triangles or vertices, or a matrix entry reaches
-/// [`MAX_MAGNITUDE`].
+/// Errors: if there are more than [`MAX_TRIANGLES`] triangles or vertices, or a matrix entry
+/// reaches [`MAX_MAGNITUDE`].
 pub fn draws(scene: &Scene, view: &View) -> Result<Vec<Draw>, DrawError> {
     scoped_draws(scene, view, &[])
 }
 
 /// The draws of `scene` as `view` sees it, in instance order, for a stack with these scopes.
-///
-/// # Errors
-/// As [`draws`].
 pub fn scoped_draws(scene: &Scene, view: &View, scopes: &[Scope]) -> Result<Vec<Draw>, DrawError> {
     for (what, count) in [
         ("triangles", scene.triangle_count()),

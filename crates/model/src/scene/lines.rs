@@ -92,9 +92,7 @@ impl Lines {
     /// The edges of every instance, each once however many triangles share it. With `crease_deg`
     /// only edges whose two faces meet at that angle or more, and edges that do not belong to
     /// exactly two faces.
-    ///
-    /// # Errors
-    /// If the scene has more than 2^23 triangles.
+    /// Errors: if the scene has more than 2^23 triangles.
     pub fn edges(scene: &Scene, crease_deg: Option<f64>) -> Result<Self, DrawError> {
         let count = scene.triangle_count();
         if count > MAX_EDGE_TRIANGLES {

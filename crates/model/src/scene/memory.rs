@@ -71,9 +71,7 @@ impl FromStr for MemoryBudget {
 }
 
 /// Bytes of a whole or decimal number with the unit MiB, GiB or TiB, at most 2^60.
-///
-/// # Errors
-/// It is no such number: what it must be, a part of a sentence.
+/// Errors: it is no such number: what it must be, a part of a sentence.
 pub fn read_size(text: &str) -> Result<u64, String> {
     let units = [("MiB", MIB), ("GiB", GIB), ("TiB", 1024 * GIB)];
     let read = |(unit, size): &(&str, u64)| {

@@ -115,9 +115,6 @@ impl Primitive {
     /// Returns true if all normals are finite, have a length between 1/2 and 2, and lie within 90
     /// degrees of each other in every triangle. Their interpolations are then at least 1/4 long
     /// and never need a substitute.
-    ///
-    /// # Errors
-    /// The work was canceled.
     pub fn normals_agree(&self, scene: &Scene) -> Result<bool, Canceled> {
         let normal = |vertex: u32| DVec3::from(self.normals.vector(&scene.vertex_bytes, vertex));
         let is_sound = |n: DVec3| (0.25..=4.0).contains(&n.length_squared());

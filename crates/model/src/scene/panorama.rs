@@ -45,9 +45,6 @@ pub struct Panorama {
 
 impl Panorama {
     /// Prepares a picture.
-    ///
-    /// # Errors
-    /// The work was canceled.
     pub fn of(picture: &LightPicture) -> Result<Self, Canceled> {
         let sharp = Square::of(picture)?;
         let mut words: Vec<u32> = form(picture)

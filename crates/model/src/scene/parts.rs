@@ -170,9 +170,7 @@ impl Scope {
     }
 
     /// The scope of these texts, each a pattern such as `mesh:Lens*`.
-    ///
-    /// # Errors
-    /// The first faulty pattern, in words that complete a sentence beginning with a key.
+    /// Errors: the first faulty pattern, in words that complete a sentence beginning with a key.
     pub fn of_texts(texts: &[String]) -> Result<Self, String> {
         let patterns = texts.iter().map(|text| text.parse());
         let patterns: Result<Vec<PartPattern>, PatternError> = patterns.collect();

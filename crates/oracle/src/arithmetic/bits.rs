@@ -7,9 +7,7 @@ use crate::{
 };
 
 /// The value of an f32, given its bits; a subnormal counts as 0.
-///
-/// # Errors
-/// [`vertex_flags::NONFINITE`] for NaN and infinities, [`vertex_flags::OUT_OF_RANGE`] for
+/// Errors: [`vertex_flags::NONFINITE`] for NaN and infinities, [`vertex_flags::OUT_OF_RANGE`] for
 /// magnitudes of 2^40 or more.
 pub fn classified(bits: u32) -> Result<f64, u32> {
     match bits >> 23 & 255 {
@@ -21,9 +19,6 @@ pub fn classified(bits: u32) -> Result<f64, u32> {
 }
 
 /// One component of an attribute, [`classified`] if it is an f32. Integers are always in range.
-///
-/// # Errors
-/// As [`classified`].
 pub fn component(
     bytes: &[u8],
     accessor: &Accessor,

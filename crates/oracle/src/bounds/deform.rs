@@ -35,9 +35,6 @@ const SECOND_ORDER: f64 = 17.0 / 16.0;
 const UNDERFLOW: f64 = 4.0 * f32::MIN_POSITIVE as f64;
 
 /// [`deform::position`] with its bound.
-///
-/// # Errors
-/// As [`deform::position`].
 pub fn position(scene: &Scene, draw: &Draw, vertex: u32) -> Result<Bounded, u32> {
     let value = deform::position(scene, draw, vertex)?;
     let stored = deform::stored_position(scene, draw, vertex)?;

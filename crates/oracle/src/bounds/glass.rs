@@ -35,9 +35,6 @@ const COMPOSED_ERROR: f64 = 0.51 / 65_535.0;
 
 /// Right answers for a picture with these layers; of a wider search, at the pixels for which it is
 /// asked.
-///
-/// # Errors
-/// The work was canceled.
 pub fn glass_bounds(
     input: &LayerInput,
     layers: &GlassLayers,

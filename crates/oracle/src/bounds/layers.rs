@@ -47,9 +47,6 @@ pub struct LayerBounds {
 
 /// The right answers round `image`, without those that only a [wider search](LayerBounds::widen)
 /// finds.
-///
-/// # Errors
-/// The work was canceled.
 pub fn layer_bounds(input: &LayerInput, image: &LayerImage) -> Result<LayerBounds, Canceled> {
     if let LayerMode::Glass(layers) = &image.mode {
         return glass_bounds(input, layers, None);

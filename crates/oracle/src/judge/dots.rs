@@ -23,9 +23,7 @@ use crate::{
 
 /// Compares the records of dots with their bounds, and the strengths on pixels, which are integers,
 /// with those that follow from the adapter's own records.
-///
-/// # Errors
-/// [`DrawError::TooMany`] for too many dots.
+/// Errors: [`DrawError::TooMany`] for too many dots.
 ///
 /// # Panics
 /// If there are records of another scene.

@@ -23,9 +23,6 @@ struct BoundedHit {
 /// may be the nearest. A layer must be listed if it is nearer for certain, and must not be if it is
 /// farther for certain. Keys must lie within their bounds, and layers be sorted by key, of equal
 /// keys by id: then the order is right wherever the bounds decide it.
-///
-/// # Errors
-/// The work was canceled.
 pub fn judge_glass(
     report: &mut ErrorReport,
     input: &LayerInput,

@@ -35,9 +35,6 @@ const PERTURBATIONS: [PassPerturbation; 6] = {
 };
 
 /// Judges the passes of a picture and adds to the `verdict` about the picture before them.
-///
-/// # Errors
-/// The work was canceled.
 pub fn judge_passes(verdict: &mut Verdict, shot: &Shot, frame: &Frame) -> Result<(), Canceled> {
     let input = ResolveInput {
         triangle_ids: &frame.triangle_id,

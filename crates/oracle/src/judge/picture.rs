@@ -55,9 +55,6 @@ pub const JUDGE_STAGES: u32 = 5;
 
 /// Judges a picture that an adapter drew of `scene`.
 ///
-/// # Errors
-/// [`DrawError`] if a transform or the number of triangles is out of range.
-///
 /// # Panics
 /// If an image or the geometry has another size than the view and the scene ask for.
 pub fn judge(

@@ -29,9 +29,6 @@ use crate::{
 /// Compares the depths of a shadow map with those of the adapter's own records, and these records
 /// with their bounds.
 ///
-/// # Errors
-/// [`DrawError`] if a transform or the number of triangles is out of range.
-///
 /// # Panics
 /// If the map is of another scene or stack.
 pub fn judge_shadow_map(
@@ -71,9 +68,6 @@ pub fn judge_shadow_map(
 /// How far the light that arrives by the map of `geometry` is from what rays find, over all pixels
 /// with a triangle that faces the light. None without a light, or if effects leave samples out, of
 /// which rays know nothing.
-///
-/// # Errors
-/// [`DrawError`] if a transform or the number of triangles is out of range.
 pub fn shadow_errors(
     scene: &Scene,
     view: &View,

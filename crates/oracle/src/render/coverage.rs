@@ -77,17 +77,11 @@ impl Coverage {
 }
 
 /// Finds what covers every sample of `view`.
-///
-/// # Errors
-/// The work was canceled.
 pub fn cover(triangles: &[OrientedTriangle], view: &View) -> Result<Coverage, Canceled> {
     cover_with(&SampleTests::default(), triangles, view)
 }
 
 /// The same, where `tests` may leave samples out.
-///
-/// # Errors
-/// The work was canceled.
 pub fn cover_with(
     tests: &SampleTests,
     triangles: &[OrientedTriangle],
@@ -140,9 +134,6 @@ impl EdgeAtSample {
 /// Visits every drawn sample of `view`, triangle by triangle, with the cell of its pixel; `visitor`
 /// makes the visitor of a triangle. Parallel by bands of rows, so a triangle may have several
 /// visitors, each sample one visit.
-///
-/// # Errors
-/// The work was canceled.
 pub fn scatter<'a, T: Send, V: FnMut(&mut T, usize, usize, Hit)>(
     tests: &SampleTests,
     triangles: &'a [OrientedTriangle],

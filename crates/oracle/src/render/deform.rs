@@ -17,10 +17,8 @@ use crate::{
 };
 
 /// Position of a vertex of `draw` in object space, deformed.
-///
-/// # Errors
-/// The flags of all components that were refused, or [`vertex_flags::OUT_OF_RANGE`] if deformation
-/// takes the vertex out of range.
+/// Errors: the flags of all components that were refused, or [`vertex_flags::OUT_OF_RANGE`] if
+/// deformation takes the vertex out of range.
 pub fn position(scene: &Scene, draw: &Draw, vertex: u32) -> Result<DVec3, u32> {
     let stored = stored_position(scene, draw, vertex)?;
     let Some(deform) = &draw.deform else {
@@ -111,9 +109,7 @@ pub fn volume(scene: &Scene, draws: &[Draw]) -> f64 {
 }
 
 /// Position of a vertex as the file has it.
-///
-/// # Errors
-/// The flags of all components that were refused.
+/// Errors: the flags of all components that were refused.
 pub fn stored_position(scene: &Scene, draw: &Draw, vertex: u32) -> Result<DVec3, u32> {
     let positions = &scene.primitives[draw.primitive].positions;
     match components(scene, positions, vertex) {

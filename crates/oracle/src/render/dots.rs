@@ -40,8 +40,7 @@ pub struct DotPlacement<'a> {
 }
 
 impl<'a> DotPlacement<'a> {
-    /// # Errors
-    /// [`DrawError::TooMany`] for more than [`MAX_DOTS`] dots.
+    /// Errors: [`DrawError::TooMany`] for more than [`MAX_DOTS`] dots.
     pub fn new(shot: &Shot<'a>, dots: &Dots) -> Result<Self, DrawError> {
         let Shot {
             scene,
@@ -177,9 +176,7 @@ pub fn snapped(dot: Option<&ClipPosition>, grid: &View) -> SnappedVertex {
 }
 
 /// The record of every dot; empty without dots.
-///
-/// # Errors
-/// [`DrawError::TooMany`] for more than [`MAX_DOTS`] dots.
+/// Errors: [`DrawError::TooMany`] for more than [`MAX_DOTS`] dots.
 pub fn dot_records(shot: &Shot) -> Result<Vec<SnappedVertex>, DrawError> {
     let Some(dots) = shot.stack.dots() else {
         return Ok(Vec::new());

@@ -23,9 +23,6 @@ pub fn is_free(stack: &Stack) -> bool {
 }
 
 /// The tests up to where the draw order of `stack` stops the drawing of these triangles.
-///
-/// # Errors
-/// The work was canceled.
 pub fn limited<'a>(
     tests: SampleTests<'a>,
     stack: &Stack,
@@ -76,9 +73,6 @@ pub fn draw_limit(
 
 /// For every triangle of the scene, the fraction of all samples that precedes it; empty without a
 /// draw order.
-///
-/// # Errors
-/// The work was canceled.
 pub fn ranks(shot: &Shot, geometry: &Geometry) -> Result<Vec<f64>, Canceled> {
     if shot.stack.draw_order().is_none() {
         return Ok(Vec::new());

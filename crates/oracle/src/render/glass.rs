@@ -42,9 +42,6 @@ pub fn nearness(hit: &GlassHit) -> (u32, u32) {
 
 /// The layers of glass of every pixel that nothing opaque hides, nearest first, and what lies
 /// behind.
-///
-/// # Errors
-/// The work was canceled.
 pub fn glass_layers(
     shot: &Shot,
     tests: &SampleTests,
@@ -118,9 +115,6 @@ pub fn linear_background(shot: &Shot) -> Vec<DVec4> {
 }
 
 /// Gamma-encoded color of every pixel, given its layers.
-///
-/// # Errors
-/// The work was canceled.
 pub fn glass_colors(input: &LayerInput, layers: &GlassLayers) -> Result<Vec<DVec4>, Canceled> {
     let shot = &input.shot;
     let width = (shot.view.width as usize).max(1);

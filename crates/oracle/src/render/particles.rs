@@ -59,18 +59,14 @@ const MAX_PARTICLE_WORK: u64 = 1 << 28;
 pub const MAX_PARTICLE_WORK_OF_CPU_ADAPTER: u64 = 1 << 29;
 
 /// Refuses particles whose simulation up to `view` takes more work than the oracle may do.
-///
-/// # Errors
-/// [`DrawError::ParticleWork`].
+/// Errors: [`DrawError::ParticleWork`].
 pub fn check_particles(view: &View, stack: &Stack) -> Result<(), DrawError> {
     check_particle_work(view, stack, MAX_PARTICLE_WORK)
 }
 
 /// Refuses particles whose simulation up to `view` takes more than `limit` evaluations of an octave
 /// of the flow.
-///
-/// # Errors
-/// [`DrawError::ParticleWork`].
+/// Errors: [`DrawError::ParticleWork`].
 pub fn check_particle_work(view: &View, stack: &Stack, limit: u64) -> Result<(), DrawError> {
     let Some(settings) = stack.particle_settings() else {
         return Ok(());
@@ -143,9 +139,6 @@ pub fn timeline(view: &View, stack: &Stack) -> ParticleTimeline {
 }
 
 /// The particles of a stack at a view.
-///
-/// # Errors
-/// The work was canceled.
 pub fn particles_at(view: &View, stack: &Stack) -> Result<Vec<ReferenceParticle>, Canceled> {
     let timeline = timeline(view, stack);
     let params: Vec<Particles> = (1..=timeline.len() as u32)

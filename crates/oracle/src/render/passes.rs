@@ -43,9 +43,6 @@ pub struct Passed {
 }
 
 /// Bytes of the picture that the passes of a stack make of `start`, and what the kept one wrote.
-///
-/// # Errors
-/// The work was canceled.
 pub fn passed(
     shot: &Shot,
     input: &ResolveInput,
@@ -60,9 +57,6 @@ pub fn passed(
 }
 
 /// The same before anything is rounded.
-///
-/// # Errors
-/// The work was canceled.
 pub fn passed_colors(
     shot: &Shot,
     input: &ResolveInput,

@@ -29,18 +29,11 @@ use crate::{
 };
 
 /// The exact picture of `scene`, the first of its sequence; empty if `view` has no pixels.
-///
-/// # Errors
-/// [`DrawError`] if a transform or the number of triangles is out of range, or the picture takes
-/// more memory or work than it may.
 pub fn render(scene: &Scene, view: &View, stack: &Stack) -> Result<Frame, DrawError> {
     render_next(scene, view, stack, None)
 }
 
 /// The exact picture of `scene` that follows an `earlier` one of the same size.
-///
-/// # Errors
-/// As [`render`].
 pub fn render_next(
     scene: &Scene,
     view: &View,
@@ -53,9 +46,6 @@ pub fn render_next(
 /// The same, with the colors of `rows` alone, the bytes that the whole picture has there. All else
 /// is that of the whole picture. So several processes share the shading of a picture; layers are
 /// drawn whole by each of them.
-///
-/// # Errors
-/// As [`render`].
 pub fn render_rows(
     scene: &Scene,
     view: &View,
@@ -68,9 +58,6 @@ pub fn render_rows(
 
 /// The picture of [`render_next`] and what it was drawn from: vertices, what clipping made, setups
 /// of sample effects, dots and the shadow map; both empty if `view` has no pixels.
-///
-/// # Errors
-/// As [`render`].
 pub fn render_with_geometry(
     scene: &Scene,
     view: &View,
@@ -172,9 +159,6 @@ fn drawn(
 
 /// The exact picture of the last of `sequence`, drawn after those before it, all of the same size.
 ///
-/// # Errors
-/// As [`render`].
-///
 /// # Panics
 /// If `sequence` is empty.
 pub fn render_sequence(scene: &Scene, sequence: &[(View, Stack)]) -> Result<Frame, DrawError> {
@@ -192,9 +176,6 @@ pub fn render_sequence(scene: &Scene, sequence: &[(View, Stack)]) -> Result<Fram
 
 /// Triangle id and depth key of every pixel with strict vertices and integer keys, which every
 /// adapter must match to the bit (`docs/exactness.md` §10); `stack` must move no vertices.
-///
-/// # Errors
-/// As [`render`].
 pub fn strict_frame(
     scene: &Scene,
     view: &View,

@@ -14,9 +14,6 @@ use crate::{
 /// Everything between the stored scene and integer coverage: one record per vertex of each draw, or
 /// three per triangle if the stack unshares vertices, and the clipped triangles of every triangle
 /// that the near plane or the guard band cuts, including those that flip.
-///
-/// # Errors
-/// The work was canceled.
 pub fn project(shot: &Shot) -> Result<Geometry, Canceled> {
     let Shot {
         scene,

@@ -34,9 +34,6 @@ fn first_record(shot: &Shot, draw: &Draw) -> usize {
 
 /// One value for every record, in order. `fill` is given the evaluator of a draw, the index of one
 /// of its records, and the values of that record and of some that follow it in the same draw.
-///
-/// # Errors
-/// The work was canceled.
 pub fn fill_records<T: Clone + Default + Send>(
     shot: &Shot,
     fill: impl Fn(&VertexEvaluator, usize, &mut [T]) + Sync,

@@ -21,9 +21,6 @@ use crate::{
 /// The exact picture of the last of `sequence`, drawn with `factor` times as many pixels along a
 /// side and shown at the size of its view.
 ///
-/// # Errors
-/// As [`render`].
-///
 /// # Panics
 /// If `sequence` is empty.
 pub fn render_scaled(
@@ -49,9 +46,6 @@ pub fn render_scaled(
 
 /// Row `row` of the picture of [`render_scaled`], without shading the others where a row depends on
 /// none of them; empty if there is no such row.
-///
-/// # Errors
-/// As [`render`].
 ///
 /// # Panics
 /// If `sequence` is empty.
@@ -97,17 +91,11 @@ pub fn finest_bits(view: &View) -> u32 {
 
 /// The exact picture on the finest grid that holds it, with positions relative to the eye before
 /// any rounding: the reference for coarser grids and rounded positions.
-///
-/// # Errors
-/// As [`render`].
 pub fn render_finest(scene: &Scene, view: &View, stack: &Stack) -> Result<Frame, DrawError> {
     render(scene, &finest(view, stack), stack)
 }
 
 /// The geometry of that picture.
-///
-/// # Errors
-/// As [`render`].
 pub fn project_finest(scene: &Scene, view: &View, stack: &Stack) -> Result<Geometry, DrawError> {
     let view = finest(view, stack);
     Ok(project(&Shot::new(
@@ -120,9 +108,6 @@ pub fn project_finest(scene: &Scene, view: &View, stack: &Stack) -> Result<Geome
 
 /// The picture of [`render_finest`] with traced shadows: the reference for shadow maps. If effects
 /// leave samples out, of which rays know nothing, shadows come from the map of `view`.
-///
-/// # Errors
-/// As [`render`].
 pub fn render_reference(scene: &Scene, view: &View, stack: &Stack) -> Result<Frame, DrawError> {
     render_finest(scene, &traced(view, stack), stack)
 }
@@ -150,9 +135,6 @@ fn traced(view: &View, stack: &Stack) -> View {
 
 /// The references of a picture: exact pictures and geometry on the finest grid for every render
 /// scale in `factors`, and, if there are several, the picture with 64 samples per pixel.
-///
-/// # Errors
-/// As [`render`].
 pub fn references(
     scene: &Scene,
     view: &View,

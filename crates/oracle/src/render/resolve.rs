@@ -38,9 +38,6 @@ pub struct ResolveInput<'a> {
 pub const TIE: f64 = 1.0 / (255.0 * 1024.0);
 
 /// Bytes of all pixels, row-major, gamma-encoded.
-///
-/// # Errors
-/// The work was canceled.
 pub fn shade(
     shot: &Shot,
     input: &ResolveInput,
@@ -50,9 +47,6 @@ pub fn shade(
 }
 
 /// The same, only of the pixels in `rows`.
-///
-/// # Errors
-/// The work was canceled.
 pub fn shade_rows(
     shot: &Shot,
     input: &ResolveInput,
@@ -68,9 +62,6 @@ pub fn shade_rows(
 }
 
 /// Bytes of all pixels under a perturbation.
-///
-/// # Errors
-/// The work was canceled.
 pub fn shade_perturbed(
     shot: &Shot,
     input: &ResolveInput,

@@ -36,10 +36,6 @@ use crate::{
 
 /// The shadow map of `scene` for the light of `stack`; none if no effect needs one, or if shadows
 /// are traced.
-///
-/// # Errors
-/// [`DrawError`] if a transform or the number of triangles is out of range, or the map takes more
-/// work than it may.
 pub fn shadow_map(
     scene: &Scene,
     view: &View,

@@ -56,9 +56,6 @@ impl OrientedTriangle {
 ///
 /// Clipped triangles replace their parent. One that has no area, or that runs against the sum of
 /// its parent's clipped triangles, flipped in the snap and is dropped.
-///
-/// # Errors
-/// The work was canceled.
 pub fn triangles(
     shot: &Shot,
     geometry: &Geometry,

@@ -129,9 +129,7 @@ impl<'a> VertexEvaluator<'a> {
     }
 
     /// Position in clip space after all effects.
-    ///
-    /// # Errors
-    /// The flags of a position that is refused.
+    /// Errors: the flags of a position that is refused.
     pub fn clip(&self, corner: Corner) -> Result<ClipPosition, u32> {
         let (position, cell_px) = self.clip_off_grid(corner)?;
         Ok(on_grid(position, cell_px, self.view))
@@ -139,9 +137,7 @@ impl<'a> VertexEvaluator<'a> {
 
     /// The same before the place is rounded to the cells of an effect, and the side of these, pixels;
     /// 0 where there are none.
-    ///
-    /// # Errors
-    /// The flags of a position that is refused.
+    /// Errors: the flags of a position that is refused.
     pub fn clip_off_grid(&self, corner: Corner) -> Result<(ClipPosition, u32), u32> {
         let position = deform::position(self.scene, self.draw, corner.vertex)?;
         let [x, y, z, w] = self.clip_rows(position - self.draw.origin(), Terms::Signed);

@@ -29,9 +29,7 @@ const MAX_COUNTED_TRIANGLES: u64 = 1 << 16;
 
 /// Refuses an image, "picture" or "shadow map", for which more samples would be tested than the
 /// oracle may test.
-///
-/// # Errors
-/// [`DrawError::OracleSamples`].
+/// Errors: [`DrawError::OracleSamples`].
 pub fn check_samples(
     image: &'static str,
     triangles: &[OrientedTriangle],
@@ -64,9 +62,6 @@ fn samples(triangles: &[OrientedTriangle], tests: &SampleTests, view: &View) -> 
 /// Can a picture of `scene` at so many times the size of `view` be judged? A measurement that needs
 /// verdicts asks before it begins. Particles are left out, since only an adapter knows where it
 /// drew them.
-///
-/// # Errors
-/// As [`judge`](crate::judge).
 pub fn can_judge(scene: &Scene, view: &View, stack: &Stack, scale: f64) -> Result<(), DrawError> {
     let (view, stack) = (&view.scaled(scale), &stack.scaled(scale));
     let draws = stack.draws(scene, view)?;
@@ -79,10 +74,6 @@ pub fn can_judge(scene: &Scene, view: &View, stack: &Stack, scale: f64) -> Resul
 /// Can a CPU draw `sequence`, views and stacks of which each needs the picture before it, at so
 /// many times their size? Each is taken to be as much work as the last. The rasterizer of a CPU
 /// adapter takes about as long for a sample as the oracle.
-///
-/// # Errors
-/// [`DrawError`] if a transform or the number of triangles is out of range, or if too many samples
-/// would be tested or particles followed.
 pub fn can_draw_sequence(
     scene: &Scene,
     sequence: &[(View, Stack)],

@@ -18,7 +18,7 @@ use crate::{
         },
         widgets::{
             icons::{Icon, icon_button},
-            panel::Panel,
+            panel::{Panel, at_right},
             theme,
         },
     },
@@ -165,7 +165,7 @@ fn head_ui(ui: &mut Ui, open: &mut Open, commands: &Commands) -> bool {
         let dot = if is_unsaved { "• " } else { "" };
         ui.label(theme::heading(&format!("{dot}{}.wgsl", open.name)))
             .on_hover_text(open.path.display().to_string());
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+        at_right(ui, |ui| {
             closes = icon_button(ui, Icon::Cross, "Close the text").clicked();
             saves |= ui
                 .add_enabled(is_unsaved, egui::Button::new("Save"))

@@ -1,8 +1,14 @@
 //! The buttons of dialogs.
 
-use eframe::egui::{self, Ui};
+use eframe::egui::{self, Ui, vec2};
 
-use crate::app::{files::command::Side, widgets::theme};
+use crate::app::{
+    files::command::Side,
+    widgets::{
+        panel::{at_right, main_button},
+        theme,
+    },
+};
 
 /// The buttons of all dialogs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,29 +32,26 @@ pub enum Choice {
 }
 
 /// Buttons from right to left, the main one emphasized; `left` adds one at the other end.
-pub fn buttons(
+pub fn buttons<C: Copy>(
     ui: &mut Ui,
-    options: &[(&str, Choice, bool)],
-    left: impl FnOnce(&mut Ui) -> Option<Choice>,
-) -> Option<Choice> {
-    let mut chosen = None;
+    options: &[(&str, C, bool)],
+    left: impl FnOnce(&mut Ui) -> Option<C>,
+) -> Option<C> {
+    ui.add_space(theme::HALF);
     ui.horizontal(|ui| {
-        chosen = left(ui);
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+        let mut chosen = left(ui);
+        at_right(ui, |ui| {
             for (text, choice, is_main) in options {
-                let button = if *is_main {
-                    egui::Button::new(*text).fill(theme::accent_ground())
-                } else {
-                    egui::Button::new(*text)
+                let button = match is_main {
+                    true => main_button(text),
+                    false => egui::Button::new(*text),
                 };
-                if ui
-                    .add(button.min_size(egui::vec2(72.0, theme::ROW)))
-                    .clicked()
-                {
+                if ui.add(button.min_size(vec2(72.0, theme::ROW))).clicked() {
                     chosen = Some(*choice);
                 }
             }
         });
-    });
-    chosen
+        chosen
+    })
+    .inner
 }

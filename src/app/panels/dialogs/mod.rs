@@ -1,6 +1,6 @@
 //! Dialogs inside the window, one at a time.
 
-mod buttons;
+pub(super) mod buttons;
 mod path;
 mod questions;
 
@@ -9,7 +9,7 @@ use std::{
     sync::Arc,
 };
 
-use eframe::egui::{self, Ui};
+use eframe::egui::Ui;
 
 use self::{
     buttons::{Choice, buttons},
@@ -30,7 +30,7 @@ use crate::{
             command::{Command, Commands},
             state::State,
         },
-        widgets::panel::Panel,
+        widgets::panel::{Panel, modal},
     },
     effect_files::Catalog,
     effects::Effect,
@@ -144,10 +144,9 @@ impl Dialogs {
     /// now. The outcome is saved to `saving`. A file that changes once more while that is asked
     /// leaves the question as it is, with the newer file.
     pub fn ask_changed(&mut self, theirs: Box<PresetFile>, saving: Option<PathBuf>) {
-        let asked = if let Some(Dialog::Changed(_, asked)) = self.open.take() {
-            asked
-        } else {
-            None
+        let asked = match self.open.take() {
+            Some(Dialog::Changed(_, asked)) => asked,
+            _ => None,
         };
         self.open = Some(Dialog::Changed(theirs, saving.or(asked)));
     }
@@ -243,21 +242,17 @@ impl Dialogs {
                     self.open = Some(Dialog::Path(dialog));
                 }
             }
-            (Choice::KeepMuted, Some(Dialog::Muted { path, name })) => file(FileCommand::Write {
-                path,
-                name,
-                drops_muted: false,
-            }),
-            (Choice::DropMuted, Some(Dialog::Muted { path, name })) => file(FileCommand::Write {
-                path,
-                name,
-                drops_muted: true,
-            }),
-            (Choice::Save, Some(Dialog::Unsaved)) => file(FileCommand::Save),
-            (Choice::Keep, Some(Dialog::Unsaved)) => file(FileCommand::Quit { keeps_edits: true }),
-            (Choice::Discard, Some(Dialog::Unsaved)) => {
-                file(FileCommand::Quit { keeps_edits: false })
+            (Choice::KeepMuted | Choice::DropMuted, Some(Dialog::Muted { path, name })) => {
+                file(FileCommand::Write {
+                    path,
+                    name,
+                    drops_muted: choice == Choice::DropMuted,
+                })
             }
+            (Choice::Save, Some(Dialog::Unsaved)) => file(FileCommand::Save),
+            (Choice::Keep | Choice::Discard, Some(Dialog::Unsaved)) => file(FileCommand::Quit {
+                keeps_edits: choice == Choice::Keep,
+            }),
             (Choice::Restore, Some(Dialog::Restore(restored))) => {
                 file(FileCommand::Restore(restored))
             }
@@ -307,39 +302,26 @@ impl Panel for Dialogs {
             dialog.request_folder(commands);
         }
         let mut chosen = None;
-        let frame = egui::Frame::window(&ui.ctx().global_style()).inner_margin(16.0);
-        let modal = egui::Modal::new(egui::Id::unique("dialog"))
-            .frame(frame)
-            .show(ui.ctx(), |ui| {
-                ui.set_width(460.0f32.min(ui.ctx().content_rect().width() - 64.0));
-                chosen = match dialog {
-                    Dialog::Path(dialog) => path_ui(
-                        ui,
-                        dialog,
-                        &state.settings.recents,
-                        &state.files.missing_files,
-                    ),
-                    Dialog::Muted { .. } => muted_ui(
-                        ui,
-                        &state
-                            .session
-                            .muted
-                            .iter()
-                            .map(String::as_str)
-                            .collect::<Vec<_>>(),
-                    ),
-                    Dialog::Unsaved => {
-                        unsaved_ui(ui, state.session.title(), state.closing.keeps_session)
-                    }
-                    Dialog::NewEffect(dialog) => new_effect_ui(ui, dialog),
-                    Dialog::Changed(theirs, saving) => {
-                        changed_ui(ui, theirs.title(), saving.is_some())
-                    }
-                    Dialog::Code(preset_file, _) => brought_ui(ui, preset_file),
-                    Dialog::Outside(preset_file, ..) => outside_ui(ui, preset_file),
-                    Dialog::Restore(restored) => restore_ui(ui, restored),
-                };
-            });
+        let modal = modal(ui.ctx(), "dialog", 16.0).show(ui.ctx(), |ui| {
+            ui.set_width(460.0f32.min(ui.ctx().content_rect().width() - 64.0));
+            chosen = match dialog {
+                Dialog::Path(dialog) => path_ui(
+                    ui,
+                    dialog,
+                    &state.settings.recents,
+                    &state.files.missing_files,
+                ),
+                Dialog::Muted { .. } => muted_ui(ui, &state.session.muted),
+                Dialog::Unsaved => {
+                    unsaved_ui(ui, state.session.title(), state.closing.keeps_session)
+                }
+                Dialog::NewEffect(dialog) => new_effect_ui(ui, dialog),
+                Dialog::Changed(theirs, saving) => changed_ui(ui, theirs.title(), saving.is_some()),
+                Dialog::Code(preset_file, _) => brought_ui(ui, preset_file),
+                Dialog::Outside(preset_file, ..) => outside_ui(ui, preset_file),
+                Dialog::Restore(restored) => restore_ui(ui, restored),
+            };
+        });
         // What a crash left is not thrown away by a click beside the question.
         if chosen.is_none() && modal.should_close() && !matches!(dialog, Dialog::Restore(_)) {
             chosen = Some(Choice::Cancel);
@@ -379,11 +361,7 @@ fn new_effect_ui(ui: &mut Ui, dialog: &mut NewEffect) -> Option<Choice> {
         ],
         |_| None,
     );
-    if is_entered {
-        Some(Choice::Accept)
-    } else {
-        choice
-    }
+    is_entered.then_some(Choice::Accept).or(choice)
 }
 
 #[cfg(test)]

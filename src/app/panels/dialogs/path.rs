@@ -359,7 +359,6 @@ pub fn path_ui(
         };
         ui.label(theme::weak(text).size(12.0));
     }
-    ui.add_space(theme::HALF);
     let verb = if dialog.replace.is_some() && dialog.error.is_some() {
         "Replace"
     } else {

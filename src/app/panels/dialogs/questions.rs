@@ -1,5 +1,7 @@
 //! Dialogs that ask one question and answer it with buttons.
 
+use std::collections::BTreeSet;
+
 use eframe::egui::{RichText, Ui};
 
 use super::buttons::{Choice, buttons};
@@ -12,18 +14,16 @@ use crate::{
     preset_file::PresetFile,
 };
 
-pub fn muted_ui(ui: &mut Ui, muted: &[&str]) -> Option<Choice> {
-    ui.label(
-        RichText::new("Some effects are muted")
-            .size(15.0)
-            .color(theme::text_strong())
-            .strong(),
-    );
+pub fn muted_ui(ui: &mut Ui, muted: &BTreeSet<String>) -> Option<Choice> {
+    ui.label(theme::title("Some effects are muted"));
     ui.label(format!(
         "{} cannot be seen now. Muting is not saved.",
-        muted.join(", ")
+        muted
+            .iter()
+            .map(String::as_str)
+            .collect::<Vec<_>>()
+            .join(", ")
     ));
-    ui.add_space(theme::HALF);
     let options = [
         ("Save with them", Choice::KeepMuted, true),
         ("Remove them and save", Choice::DropMuted, false),
@@ -34,14 +34,8 @@ pub fn muted_ui(ui: &mut Ui, muted: &[&str]) -> Option<Choice> {
 
 /// `keeps_session`: the edits can wait for the next start.
 pub fn unsaved_ui(ui: &mut Ui, title: &str, keeps_session: bool) -> Option<Choice> {
-    ui.label(
-        RichText::new("Save your changes?")
-            .size(15.0)
-            .color(theme::text_strong())
-            .strong(),
-    );
+    ui.label(theme::title("Save your changes?"));
     ui.label(format!("{title} has unsaved changes."));
-    ui.add_space(theme::HALF);
     let options = [
         ("Save", Choice::Save, true),
         ("Keep for the next start", Choice::Keep, false),
@@ -57,12 +51,7 @@ pub fn unsaved_ui(ui: &mut Ui, title: &str, keeps_session: bool) -> Option<Choic
 
 /// What is to happen with the session that a crash ended?
 pub fn restore_ui(ui: &mut Ui, restored: &Restored) -> Option<Choice> {
-    ui.label(
-        RichText::new("Go on where you were?")
-            .size(15.0)
-            .color(theme::text_strong())
-            .strong(),
-    );
+    ui.label(theme::title("Go on where you were?"));
     let title = restored.preset_file.title();
     let edits = if restored.has_edits() {
         " with its unsaved changes"
@@ -75,41 +64,29 @@ pub fn restore_ui(ui: &mut Ui, restored: &Restored) -> Option<Choice> {
             "If you start anew, the unsaved changes are lost.",
         ));
     }
-    ui.add_space(theme::HALF);
-    buttons(
-        ui,
-        &[
-            ("Open it again", Choice::Restore, true),
-            ("Start anew", Choice::Discard, false),
-        ],
-        |_| None,
-    )
+    let options = [
+        ("Open it again", Choice::Restore, true),
+        ("Start anew", Choice::Discard, false),
+    ];
+    buttons(ui, &options, |_| None)
 }
 
 pub fn changed_ui(ui: &mut Ui, title: &str, is_saving: bool) -> Option<Choice> {
-    ui.label(
-        RichText::new("The preset's file has changed")
-            .size(15.0)
-            .color(theme::text_strong())
-            .strong(),
-    );
+    ui.label(theme::title("The preset's file has changed"));
     ui.label(format!(
         "{title} has unsaved changes, and another program has changed its file."
     ));
     ui.add_space(theme::HALF);
-    let weak = "Merge takes both key by key, and yours where both have changed the same. Nothing is written to the file unless you save.";
-    ui.label(theme::weak(if is_saving {
-        "Merge takes both key by key, and yours where both have changed the same."
-    } else {
-        weak
+    let about =
+        "Merge takes both key by key, and yours where both have changed the same.".to_owned();
+    ui.label(theme::weak(match is_saving {
+        true => about,
+        false => about + " Nothing is written to the file unless you save.",
     }));
-    ui.add_space(theme::HALF);
-    let mine = if is_saving {
-        "Overwrite with mine"
-    } else {
-        "Keep mine"
+    let (mine, merge) = match is_saving {
+        true => ("Overwrite with mine", "Merge and save"),
+        false => ("Keep mine", "Merge"),
     };
-    let merge = if is_saving { "Merge and save" } else { "Merge" };
     let options = [
         (merge, Choice::Side(Side::Both), true),
         (mine, Choice::Side(Side::Mine), false),
@@ -117,9 +94,7 @@ pub fn changed_ui(ui: &mut Ui, title: &str, is_saving: bool) -> Option<Choice> {
         ("Cancel", Choice::Cancel, false),
     ];
     // Without a save nothing happens to the file yet, so keeping mine is what cancelling does.
-    buttons(ui, if is_saving { &options } else { &options[..3] }, |_| {
-        None
-    })
+    buttons(ui, &options[..3 + usize::from(is_saving)], |_| None)
 }
 
 pub fn brought_ui(ui: &mut Ui, preset_file: &PresetFile) -> Option<Choice> {
@@ -137,12 +112,7 @@ pub fn outside_ui(ui: &mut Ui, preset_file: &PresetFile) -> Option<Choice> {
     let Some(model) = &preset_file.outside_model else {
         return Some(Choice::Cancel);
     };
-    ui.label(
-        RichText::new("Open its model too?")
-            .size(15.0)
-            .color(theme::text_strong())
-            .strong(),
-    );
+    ui.label(theme::title("Open its model too?"));
     let what = match preset_file.path {
         Some(_) => "The picture",
         None => "The pasted line",
@@ -164,7 +134,6 @@ pub fn outside_ui(ui: &mut Ui, preset_file: &PresetFile) -> Option<Choice> {
             "Open it if you know the file: it is read, and the files in its folder that it names.",
         ));
     }
-    ui.add_space(theme::HALF);
     let options = [
         ("Open", Choice::OpenModel, true),
         ("Look only", Choice::LookOnly, !is_there),

@@ -1,25 +1,18 @@
 //! The browser of effects: every effect in its group, with a picture of it on the open model.
 
 pub mod groups;
-mod tile;
 
 use std::sync::{
     Arc, Weak,
     atomic::{AtomicBool, Ordering},
 };
 
-use eframe::egui::{self, RichText, ScrollArea, Ui, vec2};
+use eframe::egui::{self, ScrollArea, Ui};
 
-use self::{
-    groups::{Group, best, grouped},
-    tile::{Tile, tile_size, tile_ui},
-};
+use self::groups::{Group, best, grouped};
 use super::{
     inspector::effect_menu,
-    preset_browser::{
-        thumbnails::{Size, Thumbnails},
-        toolbar::search_ui,
-    },
+    preset_browser::thumbnails::{Size, Thumbnails},
 };
 use crate::{
     app::{
@@ -33,9 +26,11 @@ use crate::{
             state::State,
         },
         widgets::{
-            icons::{Icon, toggle_button},
-            panel::Panel,
+            form::{is_entered, search_ui},
+            icons::star_toggle,
+            panel::{Panel, modal},
             theme,
+            tile::{Tile, Tiling},
         },
     },
     effects::{Effect, lambert},
@@ -50,7 +45,7 @@ pub struct EffectBrowser {
     search: String,
     only_favorites: bool,
     /// The dialog that adds an effect is open, with its own search.
-    adding: Option<Adding>,
+    adding: Option<String>,
     /// Something in the dialog was chosen in this frame, so that it closes.
     has_added: bool,
     pictures: Thumbnails,
@@ -60,20 +55,22 @@ pub struct EffectBrowser {
     cancelled: Arc<AtomicBool>,
 }
 
-/// The dialog that adds an effect.
-#[derive(Default)]
-struct Adding {
-    search: String,
-}
-
 /// Width of the dialog, and the most height of its list, points.
 const DIALOG: [f32; 2] = [560.0, 460.0];
 const SEARCH: &str = "Search effects to add";
 
+const TILING: Tiling = Tiling {
+    width: 72.0,
+    name: 20.0,
+    margin: 2.0,
+    gap: theme::HALF,
+    list: None,
+};
+
 impl EffectBrowser {
     /// Opens the dialog that adds an effect.
     pub fn begin_adding(&mut self, search: String) {
-        self.adding = Some(Adding { search });
+        self.adding = Some(search);
     }
 
     /// Is that dialog open?
@@ -145,17 +142,7 @@ impl EffectBrowser {
                 ui.set_max_width(ui.available_width() - side - theme::GAP);
                 search_ui(ui, &mut self.search, "Search effects");
             });
-            let star = if self.only_favorites {
-                Icon::StarFull
-            } else {
-                Icon::Star
-            };
-            if toggle_button(ui, star, self.only_favorites, "Favorite effects only")
-                .on_hover_text("Favorites only")
-                .clicked()
-            {
-                self.only_favorites = !self.only_favorites;
-            }
+            star_toggle(ui, &mut self.only_favorites, "Favorite effects only");
         });
         ui.add_space(theme::HALF);
         let is_kept = |effect: &Effect| {
@@ -176,31 +163,21 @@ impl EffectBrowser {
     /// Shows the dialog that adds an effect, if it is open: a search, and the effects that are not
     /// in the stack. Enter adds the one that answers best.
     pub fn dialog_ui(&mut self, ui: &mut Ui, state: &State, commands: &Commands) {
-        let Some(Adding { mut search }) = self.adding.take() else {
+        let Some(mut search) = self.adding.take() else {
             return;
         };
         let area = ui.ctx().content_rect();
         let stack = &state.session.preset().stack;
         let all = all_effects(state);
         let is_absent = |effect: &Effect| stack.get(&effect.name).is_none();
-        let frame = egui::Frame::window(&ui.ctx().global_style()).inner_margin(12.0);
-        let modal = egui::Modal::new(egui::Id::unique("add effect"))
-            .backdrop_color(egui::Color32::from_black_alpha(60))
-            .frame(frame);
+        let modal =
+            modal(ui.ctx(), "add effect", 12.0).backdrop_color(egui::Color32::from_black_alpha(60));
         let shown = modal.show(ui.ctx(), |ui| {
             ui.set_width(DIALOG[0].min(area.width() - 48.0));
-            ui.label(
-                RichText::new("Add effect")
-                    .size(15.0)
-                    .color(theme::text_strong())
-                    .strong(),
-            );
+            ui.label(theme::title("Add effect"));
             ui.add_space(theme::HALF);
             let field = search_ui(ui, &mut search, SEARCH);
-            let is_entered = field.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
-            if ui.memory(|memory| memory.focused().is_none()) {
-                field.request_focus();
-            }
+            let is_entered = is_entered(ui, &field);
             ui.add_space(theme::HALF);
             let groups = grouped(&all, &search, is_absent);
             ScrollArea::vertical()
@@ -222,7 +199,7 @@ impl EffectBrowser {
                 stack.rival_of(effect).map(|rival| rival.name.as_str()),
             );
         } else if !is_closed && !self.has_added {
-            self.adding = Some(Adding { search });
+            self.adding = Some(search);
         }
         self.has_added = false;
     }
@@ -276,58 +253,60 @@ impl EffectBrowser {
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = 6.0;
             ui.label(theme::heading(group.name()));
-            ui.add(
-                egui::Label::new(
-                    RichText::new(group.about())
-                        .size(11.5)
-                        .color(theme::text_weak()),
-                )
-                .truncate(),
-            );
+            let about = theme::weak(group.about()).size(11.5);
+            ui.add(egui::Label::new(about).truncate());
         });
         let stack = &state.session.preset().stack;
-        let (size, columns) = tile_size(ui.available_width());
-        for row in effects.chunks(columns) {
-            let (line, _) =
-                ui.allocate_exact_size(vec2(ui.available_width(), size.y), egui::Sense::hover());
-            for (column, effect) in row.iter().enumerate() {
-                let rect = egui::Rect::from_min_size(
-                    line.min + vec2(column as f32 * (size.x + theme::HALF), 0.0),
-                    size,
-                );
-                let tile = Tile {
-                    effect,
-                    picture: self.pictures.picture(
-                        &effect.name,
-                        Size::Small,
-                        ui.is_rect_visible(rect),
-                    ),
-                    is_enabled: stack.get(&effect.name).is_some(),
-                    rival: stack.rival_of(effect).map(|rival| rival.name.as_str()),
-                    is_favorite: state.files.favorites.has(Starred::Effect, &effect.name),
-                };
-                let responses = tile_ui(ui, &tile, rect);
-                responses
-                    .tile
-                    .dnd_set_drag_payload(StackDrag::Enable((*effect).clone()));
-                responses
-                    .tile
-                    .context_menu(|ui| effect_menu::menu_ui(ui, state, commands, effect));
-                if responses.star.clicked() {
-                    commands.send(Command::Library(LibraryCommand::Star(
-                        Starred::Effect,
-                        effect.name.clone(),
-                        !tile.is_favorite,
-                    )));
-                }
-                if responses.tile.clicked() {
-                    self.has_added = true;
-                    toggle(commands, &tile);
+        TILING.show(ui, effects, |ui, effect, rect| {
+            let name = &effect.name;
+            let is_seen = ui.is_rect_visible(rect);
+            let is_enabled = stack.get(name).is_some();
+            let rival = stack.rival_of(effect).map(|rival| rival.name.as_str());
+            let is_favorite = state.files.favorites.has(Starred::Effect, name);
+            let tile = Tile {
+                kind: "Effect",
+                id: name,
+                title: name,
+                name: name.replace('_', " "),
+                about: String::new(),
+                picture: self.pictures.picture(name, Size::Small, is_seen),
+                is_chosen: is_enabled,
+                is_modified: false,
+                is_favorite,
+                is_faulty: false,
+            };
+            let [tile, star] = tile.show(ui, TILING, rect, egui::Sense::click_and_drag());
+            tile.dnd_set_drag_payload(StackDrag::Enable((*effect).clone()));
+            tile.context_menu(|ui| effect_menu::menu_ui(ui, state, commands, effect));
+            if star.clicked() {
+                let star = LibraryCommand::Star(Starred::Effect, name.clone(), !is_favorite);
+                commands.send(Command::Library(star));
+            }
+            if tile.clicked() {
+                self.has_added = true;
+                // Enables it in place of its rival if there is one, or disables it.
+                match is_enabled {
+                    true => commands.edit(Edit::Disable((*effect).clone())),
+                    false => add(commands, effect, rival),
                 }
             }
-        }
+            tile.on_hover_ui(|ui| about_ui(ui, effect, is_enabled, rival));
+        });
         ui.add_space(theme::HALF);
     }
+}
+
+/// What a tile says on hover.
+fn about_ui(ui: &mut Ui, effect: &Effect, is_enabled: bool, rival: Option<&str>) {
+    ui.label(theme::strong(&effect.name));
+    ui.label(&effect.about);
+    ui.label(theme::weak(format!("Hooks: {}", effect.hooks.names())));
+    let action = match (is_enabled, rival) {
+        (true, _) => "Click to take it out of the stack".to_owned(),
+        (false, Some(rival)) => format!("Click to use it instead of {rival}"),
+        (false, None) => "Click to enable it, or drag it to its place in the stack".to_owned(),
+    };
+    ui.label(theme::weak(action));
 }
 
 /// The dialog that adds an effect; the tab belongs to the browser of presets.
@@ -344,14 +323,6 @@ fn all_effects(state: &State) -> Vec<&Arc<Effect>> {
     preset_file
         .effects
         .effects_with(stack.iter().map(|enabled| &enabled.effect))
-}
-
-/// Enables the effect of a tile, in place of its rival if there is one, or disables it.
-fn toggle(commands: &Commands, tile: &Tile<'_>) {
-    match tile.is_enabled {
-        true => commands.edit(Edit::Disable(tile.effect.clone())),
-        false => add(commands, tile.effect, tile.rival),
-    }
 }
 
 /// Enables an effect, in place of its rival if there is one, and shows it in the inspector.

@@ -18,7 +18,7 @@ use crate::{
             command::{Command, Commands, Edit},
             state::State,
         },
-        widgets::{text::short, theme},
+        widgets::{panel::describe_chosen, text::short, theme},
     },
     params::Value,
     preset::{Tier, settings::Setting},
@@ -110,14 +110,12 @@ fn names_ui(ui: &mut Ui, setting: &'static Setting, commands: &Commands, chosen:
             egui::Id::unique(("tier", index)),
             Sense::click(),
         );
-        response.widget_info(|| {
-            egui::WidgetInfo::selected(
-                egui::Role::Button,
-                true,
-                tier == chosen,
-                format!("Tier {}", tier.name()),
-            )
-        });
+        describe_chosen(
+            &response,
+            egui::Role::Button,
+            tier == chosen,
+            format!("Tier {}", tier.name()),
+        );
         if response.on_hover_text(about(tier)).clicked() && tier != chosen {
             commands.edit(Edit::Setting(setting, Value::Choice(index)));
         }
@@ -266,7 +264,7 @@ fn axes_ui(ui: &mut Ui, state: &State, commands: &Commands) {
                     } else {
                         why
                     };
-                    ui.add(egui::Label::new(theme::weak(text).size(11.0)).wrap());
+                    ui.add(egui::Label::new(theme::small(text)).wrap());
                 });
             }
             let others = AXES.len()
@@ -275,12 +273,9 @@ fn axes_ui(ui: &mut Ui, state: &State, commands: &Commands) {
                     .filter(|axis| reason(axis).is_some() || pins.get(axis).is_some())
                     .count();
             if others > 0 {
-                ui.label(
-                    theme::weak(format!(
-                        "{others} more axes decide about nothing in this picture."
-                    ))
-                    .size(11.0),
-                );
+                ui.label(theme::small(format!(
+                    "{others} more axes decide about nothing in this picture."
+                )));
             }
         });
 }

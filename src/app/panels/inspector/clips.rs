@@ -1,7 +1,7 @@
 //! The folder of the clips: which clip of the scene plays, how fast, and which second one is
 //! blended in.
 
-use eframe::egui::{self, ComboBox, Ui};
+use eframe::egui::{self, Ui};
 
 use super::rows::{folder, setting_ui};
 use crate::{
@@ -10,7 +10,7 @@ use crate::{
             command::{Commands, Edit},
             state::State,
         },
-        widgets::theme,
+        widgets::{form::menu_ui, panel::row, theme},
     },
     preset::{ClipPlayback, Clock},
     scene::{Scene, rig::Clip},
@@ -61,9 +61,7 @@ pub fn clips_ui(ui: &mut Ui, state: &State, commands: &Commands) {
 /// Holds a time of the clip, or lets the clip follow the clock, whose range may span it.
 fn hold_ui(ui: &mut Ui, commands: &Commands, clip: &Clip, clock: &Clock, play: &mut ClipPlayback) {
     let (duration_s, speed) = (clip.duration_s, play.speed);
-    ui.horizontal(|ui| {
-        ui.set_min_height(theme::ROW);
-        ui.add_space(theme::GAP);
+    row(ui, |ui| {
         let mut is_held = play.clip_time_s.is_some();
         let hold = ui
             .checkbox(&mut is_held, "Hold")
@@ -86,14 +84,11 @@ fn hold_ui(ui: &mut Ui, commands: &Commands, clip: &Clip, clock: &Clock, play: &
                 .accessible_name("scene.pose_s");
             return;
         }
-        let range_s = [
-            0.0,
-            if speed == 0.0 {
-                0.0
-            } else {
-                duration_s / speed.abs()
-            },
-        ];
+        let whole_s = match speed == 0.0 {
+            true => 0.0,
+            false => duration_s / speed.abs(),
+        };
+        let range_s = [0.0, whole_s];
         if range_s[1] > 0.0 && clock.range_s != range_s {
             let button = ui
                 .button("Clock spans the clip")
@@ -109,26 +104,21 @@ fn hold_ui(ui: &mut Ui, commands: &Commands, clip: &Clip, clock: &Clock, play: &
 
 /// A menu of the scene's clips; `none` is the label of the empty name.
 fn clip_ui(ui: &mut Ui, name: &str, none: &str, scene: &Scene, chosen: &mut String) {
-    let shown = if chosen.is_empty() {
-        none.to_owned()
-    } else {
-        chosen.clone()
+    let now = match chosen.as_str() {
+        "" => none.to_owned(),
+        name => name.to_owned(),
     };
-    ui.horizontal(|ui| {
-        ui.set_min_height(theme::ROW);
-        ui.add_space(theme::GAP);
-        let menu = ComboBox::from_id_salt(name)
-            .selected_text(shown)
-            .width(ui.available_width() - theme::GAP);
-        let menu = menu.show_ui(ui, |ui| {
-            ui.selectable_value(chosen, String::new(), none);
-            for (index, clip) in scene.rig.clips.iter().enumerate() {
-                let id = crate::app::files::scene_loader::clip_id(scene, index);
-                let about = format!("{:.2} s, {} channels", clip.duration_s, clip.channels.len());
-                ui.selectable_value(chosen, id.clone(), id)
-                    .on_hover_text(about);
-            }
-        });
-        menu.response.accessible_name(name);
+    let clips = scene.rig.clips.iter().enumerate().map(|(index, clip)| {
+        let id = crate::app::files::scene_loader::clip_id(scene, index);
+        let about = format!("{:.2} s, {} channels", clip.duration_s, clip.channels.len());
+        (id.clone(), id, about)
+    });
+    let none = [(String::new(), none.to_owned(), String::new())];
+    row(ui, |ui| {
+        let width = ui.available_width() - theme::GAP;
+        let offers = none.into_iter().chain(clips);
+        if let (Some(clip), _) = menu_ui(ui, name, (now, width), Some(chosen), offers) {
+            *chosen = clip;
+        }
     });
 }

@@ -24,6 +24,7 @@ use crate::{
         widgets::{
             fields::{Row, row_ui},
             icons::{Icon, icon_button, paint},
+            panel::{at_right, describe, row},
             reveal, theme,
         },
     },
@@ -35,7 +36,7 @@ use crate::{
 pub fn effects_ui(ui: &mut Ui, state: &State, commands: &Commands) {
     let head = ui.horizontal(|ui| {
         ui.label(theme::heading("Effects"));
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+        at_right(ui, |ui| {
             if icon_button(ui, Icon::Dice, &Action::Randomize.hint()).clicked() {
                 commands.perform(Action::Randomize);
             }
@@ -81,9 +82,7 @@ pub fn effects_ui(ui: &mut Ui, state: &State, commands: &Commands) {
 /// The files of effects that are faulty.
 fn faults_ui(ui: &mut Ui, state: &State) {
     for (name, error) in state.files.live.effect_faults() {
-        ui.horizontal(|ui| {
-            ui.set_min_height(theme::ROW);
-            ui.add_space(theme::GAP);
+        row(ui, |ui| {
             let label =
                 ui.label(RichText::new(format!("{name}.wgsl is faulty")).color(theme::red()));
             label.on_hover_text(RichText::new(error).monospace());
@@ -161,9 +160,7 @@ fn header_ui(
         {
             commands.edit(Edit::Disable(effect.clone()));
         }
-        let text = RichText::new(title(effect))
-            .strong()
-            .color(theme::text_strong());
+        let text = theme::strong(title(effect)).strong();
         let fold = ui
             .add(egui::Button::new(text).frame(false))
             .on_hover_text(&effect.about);
@@ -174,7 +171,7 @@ fn header_ui(
         {
             ui.data_mut(|data| data.insert_temp(fold_id(effect), !is_folded));
         }
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+        at_right(ui, |ui| {
             ui.spacing_mut().item_spacing.x = 0.0;
             let more = icon_button(ui, Icon::More, &format!("More of {}", effect.name));
             egui::Popup::menu(&more).show(|ui| effect_menu::menu_ui(ui, state, commands, effect));
@@ -205,9 +202,7 @@ fn header_ui(
 fn grip_ui(ui: &mut Ui, stack: &[&Arc<Effect>], index: usize) {
     let effect = stack[index];
     let (rect, grip) = ui.allocate_exact_size(vec2(10.0, theme::ROW - 4.0), Sense::drag());
-    grip.widget_info(|| {
-        egui::WidgetInfo::labeled(egui::Role::Button, true, format!("Drag {}", effect.name))
-    });
+    describe(&grip, egui::Role::Button, format!("Drag {}", effect.name));
     let ink = if grip.hovered() || grip.dragged() {
         theme::text_strong()
     } else {

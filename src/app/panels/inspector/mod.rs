@@ -74,9 +74,7 @@ fn leads_ui(ui: &mut Ui) {
         ui.spacing_mut().item_spacing.x = 10.0;
         ui.spacing_mut().button_padding = egui::vec2(0.0, 1.0);
         for title in LEADS {
-            let text = egui::RichText::new(title)
-                .size(11.5)
-                .color(theme::text_weak());
+            let text = theme::weak(title).size(11.5);
             let button = ui.add(egui::Button::new(text).frame(false));
             if button.accessible_name(format!("Go to {title}")).clicked() {
                 lead_to(ui.ctx(), title);

@@ -9,7 +9,7 @@ use crate::app::{
         command::{Command, Commands},
         state::State,
     },
-    widgets::{icons::swatch, text::grouped, theme},
+    widgets::{icons::swatch, panel::at_right, text::grouped, theme},
 };
 
 pub fn overlays_ui(ui: &mut Ui, state: &State, commands: &Commands) {
@@ -38,7 +38,7 @@ pub fn overlays_ui(ui: &mut Ui, state: &State, commands: &Commands) {
             if let Some(findings) = findings {
                 let count = findings.count(overlay);
                 let is_bad = overlay.is_error() && overlay.fault().is_some() && count > 0;
-                ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                at_right(ui, |ui| {
                     let text = RichText::new(grouped(count)).monospace();
                     ui.label(text.color(if is_bad {
                         theme::red()

@@ -1,15 +1,15 @@
 //! The button "Parts" of the scene: which of them are shown.
 
-use eframe::egui::{self, Popup, PopupCloseBehavior, ScrollArea, TextEdit, Ui};
+use eframe::egui::{self, Popup, PopupCloseBehavior, Ui};
 
-use super::scope::{Entry, LIST_HEIGHT, LIST_WIDTH, entries};
+use super::scope::{Entry, entries, list_ui as parts_list_ui, part_search_ui, short_name};
 use crate::{
     app::{
         shell::{
             command::{Commands, Edit},
             state::State,
         },
-        widgets::theme,
+        widgets::{panel::at_right, theme},
     },
     scene::parts::{PartPattern, Scope, ShownParts},
 };
@@ -41,10 +41,7 @@ fn summary(shown: &ShownParts) -> String {
     match shown.only.patterns() {
         [] if hidden == 0 => "all shown".into(),
         [] => format!("{hidden} hidden"),
-        [only] => {
-            let short: String = only.glob().chars().take(18).collect();
-            format!("only {} {short}", only.kind.name())
-        }
+        [only] => format!("only {}", short_name(only)),
         several => format!("only {}", several.len()),
     }
 }
@@ -52,51 +49,20 @@ fn summary(shown: &ShownParts) -> String {
 /// The list with its search, and the button below it. Hidden parts come first, since the scene that
 /// is shown has them no more.
 fn list_ui(ui: &mut Ui, state: &State, commands: &Commands, shown: &ShownParts) {
-    ui.set_width(LIST_WIDTH);
-    let id = search_id();
-    let mut search: String = ui.data(|data| data.get_temp(id)).unwrap_or_default();
-    let field = TextEdit::singleline(&mut search)
-        .id(id)
-        .hint_text("Search parts")
-        .desired_width(f32::INFINITY);
-    ui.add(field).accessible_name("Search parts of the scene");
-    ui.data_mut(|data| data.insert_temp(id, search.clone()));
-    let needle = search.trim().to_lowercase();
-    let hidden = shown.hidden.patterns().iter().map(|pattern| Entry {
-        pattern: pattern.clone(),
-        text: pattern.to_string(),
-        indent: 0.0,
+    let name = "Search parts of the scene".to_owned();
+    let search = part_search_ui(ui, search_id(), "Search parts", name);
+    let hidden = shown.hidden.patterns();
+    let seen = state.session.scene().map(|scene| entries(ui, scene));
+    let seen = seen.iter().flat_map(|seen| seen.iter());
+    let seen = seen
+        .filter(|entry| !hidden.contains(&entry.pattern))
+        .cloned();
+    let listed = hidden.iter().map(Entry::of_pattern).chain(seen);
+    let listed: Vec<Entry> = listed.filter(|entry| entry.answers(&search)).collect();
+    let changed = parts_list_ui(ui, &listed, |ui, entry, shows_kind| {
+        entry_ui(ui, shown, entry, shows_kind)
     });
-    let seen = state
-        .session
-        .scene()
-        .map_or_else(|| [].into(), |scene| entries(ui, scene));
-    let listed: Vec<Entry> = hidden
-        .chain(
-            seen.iter()
-                .filter(|entry| !shown.hidden.patterns().contains(&entry.pattern))
-                .cloned(),
-        )
-        .filter(|entry| {
-            needle.is_empty() || entry.pattern.to_string().to_lowercase().contains(&needle)
-        })
-        .collect();
-    let mut changed = None;
-    ScrollArea::vertical()
-        .max_height(LIST_HEIGHT)
-        .auto_shrink([false, true])
-        .show_rows(ui, theme::ROW, listed.len(), |ui, rows| {
-            for index in rows {
-                let is_first =
-                    index == 0 || listed[index - 1].pattern.kind != listed[index].pattern.kind;
-                if let Some(parts) = entry_ui(ui, shown, &listed[index], is_first) {
-                    changed = Some(parts);
-                }
-            }
-        });
-    if listed.is_empty() {
-        ui.label(theme::weak("No part has this name."));
-    }
+    let mut changed = changed.map(|(_, parts)| parts);
     ui.separator();
     let all = ShownParts {
         variant: shown.variant.clone(),
@@ -120,42 +86,35 @@ fn entry_ui(
     entry: &Entry,
     shows_kind: bool,
 ) -> Option<ShownParts> {
-    ui.horizontal(|ui| {
-        ui.set_min_height(theme::ROW);
-        ui.add_space(entry.indent);
-        let pattern: &PartPattern = &entry.pattern;
-        let mut is_shown = !shown.hidden.patterns().contains(pattern);
-        let tick = ui
-            .checkbox(&mut is_shown, &entry.text)
-            .on_hover_text("Shown or hidden")
-            .accessible_name(format!("Show {pattern}"));
-        if tick.changed() {
-            return Some(ShownParts {
-                hidden: shown.hidden.with(pattern, !is_shown),
-                ..shown.clone()
-            });
-        }
-        let is_alone = shown.only.patterns() == [pattern.clone()];
-        let at_the_end = egui::Layout::right_to_left(egui::Align::Center);
-        let alone = ui.with_layout(at_the_end, |ui| {
-            let alone = ui
-                .selectable_label(is_alone, "only")
-                .on_hover_text("Show this part alone")
-                .accessible_name(format!("Only {pattern}"));
-            if shows_kind {
-                ui.label(theme::weak(pattern.kind.plural()));
-            }
-            alone.clicked()
-        });
-        alone.inner.then(|| ShownParts {
-            only: if is_alone {
-                Scope::default()
-            } else {
-                Scope::new([pattern.clone()])
-            },
-            hidden: Scope::default(),
+    let pattern: &PartPattern = &entry.pattern;
+    let mut is_shown = !shown.hidden.patterns().contains(pattern);
+    let tick = ui
+        .checkbox(&mut is_shown, &entry.text)
+        .on_hover_text("Shown or hidden")
+        .accessible_name(format!("Show {pattern}"));
+    if tick.changed() {
+        return Some(ShownParts {
+            hidden: shown.hidden.with(pattern, !is_shown),
             ..shown.clone()
-        })
+        });
+    }
+    let is_alone = shown.only.patterns() == [pattern.clone()];
+    let is_clicked = at_right(ui, |ui| {
+        let alone = ui
+            .selectable_label(is_alone, "only")
+            .on_hover_text("Show this part alone")
+            .accessible_name(format!("Only {pattern}"));
+        if shows_kind {
+            ui.label(theme::weak(pattern.kind.plural()));
+        }
+        alone.clicked()
+    });
+    is_clicked.then(|| ShownParts {
+        only: match is_alone {
+            true => Scope::default(),
+            false => Scope::new([pattern.clone()]),
+        },
+        hidden: Scope::default(),
+        ..shown.clone()
     })
-    .inner
 }

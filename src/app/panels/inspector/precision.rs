@@ -42,7 +42,7 @@ fn errors_ui(ui: &mut Ui, state: &State, commands: &Commands, effect: &Arc<Effec
         } else {
             "f32 error: measured at rest"
         };
-        ui.label(theme::weak(text).size(11.0));
+        ui.label(theme::small(text));
         return;
     };
     let found = measured
@@ -55,7 +55,7 @@ fn errors_ui(ui: &mut Ui, state: &State, commands: &Commands, effect: &Arc<Effec
         "The effect's text in f32 against f64, on the oracle's picture of {width}x{height} pixels."
     );
     if found.is_empty() {
-        ui.label(theme::weak("f32 error: none").size(11.0))
+        ui.label(theme::small("f32 error: none"))
             .on_hover_text(&about);
     }
     for error in found {
@@ -69,9 +69,7 @@ fn errors_ui(ui: &mut Ui, state: &State, commands: &Commands, effect: &Arc<Effec
             ),
             None => "The place lies outside the picture.".into(),
         };
-        let button = egui::Button::new(theme::weak(&text).size(11.0))
-            .frame(false)
-            .small();
+        let button = egui::Button::new(theme::small(&text)).frame(false).small();
         let button = ui.add_enabled(error.uv.is_some(), button);
         if button
             .on_hover_text(format!("{about} {place}"))

@@ -134,7 +134,7 @@ pub fn kernel_ui(ui: &mut Ui, state: &State) {
         ui.label(theme::weak("The kernel appears with the first frame."));
         return;
     };
-    ui.label(RichText::new(key).monospace().color(theme::text_strong()));
+    ui.label(theme::strong(key).monospace());
     let bytes: u64 = buffers.iter().map(|buffer| buffer.bytes).sum();
     ui.add_space(theme::HALF);
     ui.label(theme::weak(format!(

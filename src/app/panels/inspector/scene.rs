@@ -1,6 +1,6 @@
 //! The folder of the scene: its settings, its cameras and its images.
 
-use eframe::egui::{ComboBox, Ui};
+use eframe::egui::Ui;
 
 use super::{
     parts::parts_ui,
@@ -12,7 +12,7 @@ use crate::{
             command::{Command, Commands, Edit, RowCommand},
             state::State,
         },
-        widgets::{text, theme},
+        widgets::{form::menu_ui, panel::row, text, theme},
     },
     params::{Stored as _, Value},
     preset::{
@@ -55,9 +55,7 @@ pub fn scene_ui(ui: &mut Ui, state: &State, commands: &Commands) {
             variants_ui(ui, scene, &preset.parts, commands);
         }
         if let Some(text) = images_text(scene) {
-            ui.horizontal(|ui| {
-                ui.set_min_height(theme::ROW);
-                ui.add_space(theme::GAP);
+            row(ui, |ui| {
                 ui.label(theme::weak(text)).on_hover_ui(|ui| {
                     for image in &scene.images {
                         let [width, height] = image.size();
@@ -83,30 +81,53 @@ fn surroundings_ui(ui: &mut Ui, state: &State, commands: &Commands) {
         &state.session.preset_file,
         &state.session.preset().surroundings,
     );
-    ui.horizontal(|ui| {
-        ui.set_min_height(theme::ROW);
-        ui.add_space(theme::GAP);
-        let chosen = match named.as_str() {
-            "" => NONE.to_owned(),
-            name => format!("in {}", surroundings::shown(name)),
-        };
-        let menu = ComboBox::from_id_salt("scene.surroundings")
-            .selected_text(chosen)
-            .width(ui.available_width() - theme::GAP);
-        let menu = menu.show_ui(ui, |ui| {
-            let known = surroundings::known(file.path.as_deref()).into_iter();
-            for name in [String::new()].into_iter().chain(known) {
-                let label = if name.is_empty() { NONE } else { name.as_str() };
-                let is_chosen = *named == name;
-                if ui.selectable_label(is_chosen, label).clicked() && !is_chosen {
-                    commands.edit(Edit::Setting(setting, name.to_value()));
-                }
-            }
-        });
-        menu.response
-            .on_hover_text("The .hdr files beside the preset, and those of the gallery. Studio and sky show the picture where their environment is picture.")
-            .accessible_name("scene.surroundings");
-    });
+    let now = match named.as_str() {
+        "" => NONE.to_owned(),
+        name => format!("in {}", surroundings::shown(name)),
+    };
+    let known = surroundings::known(file.path.as_deref()).into_iter();
+    let known = known.map(|name| (name.clone(), name));
+    let hint = "The .hdr files beside the preset, and those of the gallery. Studio and sky show the picture where their environment is picture.";
+    let chosen = scene_menu(
+        ui,
+        "scene.surroundings",
+        now,
+        (Some(named), NONE),
+        known,
+        hint,
+    );
+    if let Some(name) = chosen {
+        commands.edit(Edit::Setting(setting, name.to_value()));
+    }
+}
+
+/// A menu in a row of the scene: nothing, called `none` if that can be chosen, and the names.
+fn scene_menu(
+    ui: &mut Ui,
+    name: &str,
+    now: String,
+    (chosen, none): (Option<&String>, &str),
+    offers: impl Iterator<Item = (String, String)>,
+    hint: &str,
+) -> Option<String> {
+    let none = (!none.is_empty()).then(|| (String::new(), none.to_owned()));
+    let offers = none.into_iter().chain(offers);
+    let offers = offers.map(|(name, label)| (name, label, ""));
+    row(ui, |ui| {
+        let width = ui.available_width() - theme::GAP;
+        let (taken, menu) = menu_ui(ui, name, (now, width), chosen, offers);
+        menu.on_hover_text(hint);
+        taken
+    })
+}
+
+/// The name of the scene's camera or variant at `index`. Of those with the same name, all but the
+/// first go by their index.
+fn unique_name(name: &str, index: usize, found: Option<usize>) -> String {
+    match found == Some(index) {
+        true => name.to_owned(),
+        false => format!("#{index}"),
+    }
 }
 
 /// The setting that makes the background a gradient.
@@ -117,9 +138,7 @@ fn gradient_ui(ui: &mut Ui, preset: &Preset, commands: &Commands) {
     let Some(setting) = Setting::find(BOTTOM) else {
         return;
     };
-    ui.horizontal(|ui| {
-        ui.set_min_height(theme::ROW);
-        ui.add_space(theme::GAP);
+    row(ui, |ui| {
         let mut is_on = preset.output.background_bottom.is_some();
         let tick = ui.checkbox(&mut is_on, "gradient").on_hover_text(
             "The background changes from this color at the top to another at the bottom",
@@ -138,9 +157,7 @@ fn gradient_ui(ui: &mut Ui, preset: &Preset, commands: &Commands) {
 /// The tick of the ground, which adds it or removes it, and the parts of the scene.
 fn ground_ui(ui: &mut Ui, state: &State, commands: &Commands) {
     let preset = state.session.preset();
-    ui.horizontal(|ui| {
-        ui.set_min_height(theme::ROW);
-        ui.add_space(theme::GAP);
+    row(ui, |ui| {
         let mut is_on = preset.ground.is_some();
         let tick = ui
             .checkbox(&mut is_on, "ground")
@@ -175,48 +192,24 @@ fn first_bottom([r, g, b, alpha]: [f32; 4]) -> [f32; 4] {
 fn cameras_ui(ui: &mut Ui, scene: &Scene, preset: &Preset, commands: &Commands) {
     let id = |index: usize| {
         let name = &scene.cameras[index].name;
-        // Of cameras with the same name, all but the first go by their index.
-        if scene.camera(name) == Some(index) {
-            name.clone()
-        } else {
-            format!("#{index}")
-        }
+        unique_name(name, index, scene.camera(name))
     };
-    let chosen = preset
-        .camera
-        .is_none()
-        .then(|| scene.camera(&preset.scene_camera).unwrap_or(0));
-    ui.horizontal(|ui| {
-        ui.set_min_height(theme::ROW);
-        ui.add_space(theme::GAP);
-        let shown = chosen.map_or_else(
-            || "the preset's own camera".to_owned(),
-            |index| format!("camera {}", id(index)),
-        );
-        let menu = ComboBox::from_id_salt("scene.camera")
-            .selected_text(shown)
-            .width(ui.available_width() - theme::GAP);
-        let menu = menu.show_ui(ui, |ui| {
-            for index in 0..scene.cameras.len() {
-                if ui
-                    .selectable_label(chosen == Some(index), id(index))
-                    .clicked()
-                {
-                    // The first camera is the default, so it needs no name.
-                    commands.edit(Edit::SceneCamera(if index == 0 {
-                        String::new()
-                    } else {
-                        id(index)
-                    }));
-                }
-            }
-        });
-        menu.response
-            .on_hover_text(
-                "Cameras of the scene. Moving the camera in the picture gives the preset its own.",
-            )
-            .accessible_name("scene.camera");
-    });
+    let chosen = match preset.camera {
+        None => Some(id(scene.camera(&preset.scene_camera).unwrap_or(0))),
+        Some(_) => None,
+    };
+    let now = match &chosen {
+        None => "the preset's own camera".to_owned(),
+        Some(id) => format!("camera {id}"),
+    };
+    let offers = (0..scene.cameras.len()).map(|index| (id(index), id(index)));
+    let hint = "Cameras of the scene. Moving the camera in the picture gives the preset its own.";
+    let taken = scene_menu(ui, "scene.camera", now, (chosen.as_ref(), ""), offers, hint);
+    if let Some(camera) = taken {
+        // The first camera is the default, so it needs no name.
+        let name = Some(camera).filter(|camera| *camera != id(0));
+        commands.edit(Edit::SceneCamera(name.unwrap_or_default()));
+    }
 }
 
 /// A menu of the variants of the scene's materials.
@@ -224,39 +217,21 @@ fn variants_ui(ui: &mut Ui, scene: &Scene, shown: &ShownParts, commands: &Comman
     const NONE: &str = "no variant";
     let id = |index: usize| {
         let name = &scene.variants[index];
-        // Of variants with the same name, all but the first go by their index.
-        if scene.variant(name) == Some(index) {
-            name.clone()
-        } else {
-            format!("#{index}")
-        }
+        unique_name(name, index, scene.variant(name))
     };
-    ui.horizontal(|ui| {
-        ui.set_min_height(theme::ROW);
-        ui.add_space(theme::GAP);
-        let chosen = match shown.variant.as_str() {
-            "" => NONE.to_owned(),
-            name => format!("variant {name}"),
-        };
-        let menu = ComboBox::from_id_salt("scene.variant")
-            .selected_text(chosen)
-            .width(ui.available_width() - theme::GAP);
-        let menu = menu.show_ui(ui, |ui| {
-            let all = (0..scene.variants.len()).map(|index| (id(index), id(index)));
-            for (variant, label) in [(String::new(), NONE.to_owned())].into_iter().chain(all) {
-                let is_chosen = shown.variant == variant;
-                if ui.selectable_label(is_chosen, label).clicked() && !is_chosen {
-                    commands.edit(Edit::Parts(ShownParts {
-                        variant,
-                        ..shown.clone()
-                    }));
-                }
-            }
-        });
-        menu.response
-            .on_hover_text("Variants of the scene's materials")
-            .accessible_name("scene.variant");
-    });
+    let now = match shown.variant.as_str() {
+        "" => NONE.to_owned(),
+        name => format!("variant {name}"),
+    };
+    let offers = (0..scene.variants.len()).map(|index| (id(index), id(index)));
+    let hint = "Variants of the scene's materials";
+    let chosen = (Some(&shown.variant), NONE);
+    if let Some(variant) = scene_menu(ui, "scene.variant", now, chosen, offers, hint) {
+        commands.edit(Edit::Parts(ShownParts {
+            variant,
+            ..shown.clone()
+        }));
+    }
 }
 
 /// `3 images, 1.5 MiB`; none without images.

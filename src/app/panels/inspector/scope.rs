@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use eframe::egui::{self, Popup, PopupCloseBehavior, RichText, ScrollArea, TextEdit, Ui};
+use eframe::egui::{self, Popup, PopupCloseBehavior, ScrollArea, TextEdit, Ui};
 
 use crate::{
     app::{
@@ -21,8 +21,8 @@ use crate::{
     },
 };
 
-pub(super) const LIST_WIDTH: f32 = 240.0;
-pub(super) const LIST_HEIGHT: f32 = 260.0;
+const LIST_WIDTH: f32 = 240.0;
+const LIST_HEIGHT: f32 = 260.0;
 
 /// An entry of the list: a part of the scene, or a pattern of the scope that is not the name of
 /// one.
@@ -32,6 +32,21 @@ pub(super) struct Entry {
     /// What the row shows: the name, indented below its parent, and the number of draws.
     pub text: String,
     pub indent: f32,
+}
+
+impl Entry {
+    pub(super) fn of_pattern(pattern: &PartPattern) -> Self {
+        Self {
+            pattern: pattern.clone(),
+            text: pattern.to_string(),
+            indent: 0.0,
+        }
+    }
+
+    pub(super) fn answers(&self, search: &str) -> bool {
+        let name = self.pattern.to_string().to_lowercase();
+        name.contains(&search.trim().to_lowercase())
+    }
 }
 
 /// What is known of a scene while its parts are shown: finding them takes a while in a large scene.
@@ -101,26 +116,22 @@ fn search_id(effect: &Effect) -> egui::Id {
 fn summary(on: &Scope) -> String {
     match on.patterns() {
         [] => "whole scene".into(),
-        [only] => {
-            let short: String = only.glob().chars().take(18).collect();
-            format!("{} {short}", only.kind.name())
-        }
+        [only] => short_name(only),
         several => format!("{} parts", several.len()),
     }
 }
 
+/// `mesh Lens`, not too long for a button.
+pub(super) fn short_name(pattern: &PartPattern) -> String {
+    let short: String = pattern.glob().chars().take(18).collect();
+    format!("{} {short}", pattern.kind.name())
+}
+
 /// The list with its search, and the buttons below it.
 fn picker_ui(ui: &mut Ui, state: &State, commands: &Commands, effect: &Arc<Effect>, on: &Scope) {
-    ui.set_width(LIST_WIDTH);
-    let id = search_id(effect);
-    let mut search: String = ui.data(|data| data.get_temp(id)).unwrap_or_default();
-    let field = TextEdit::singleline(&mut search)
-        .id(id)
-        .hint_text("Search parts, or write a pattern: mesh:Lens*")
-        .desired_width(f32::INFINITY);
-    ui.add(field)
-        .accessible_name(format!("Search parts for {}", effect.name));
-    ui.data_mut(|data| data.insert_temp(id, search.clone()));
+    let name = format!("Search parts for {}", effect.name);
+    let hint = "Search parts, or write a pattern: mesh:Lens*";
+    let search = part_search_ui(ui, search_id(effect), hint, name);
     let mut changed: Option<Scope> = None;
     // A pattern in the search field that is no name of the list.
     if let Ok(pattern) = search.trim().parse::<PartPattern>()
@@ -129,39 +140,18 @@ fn picker_ui(ui: &mut Ui, state: &State, commands: &Commands, effect: &Arc<Effec
     {
         changed = Some(on.with(&pattern, true));
     }
-    let entries = state
-        .session
-        .scene()
-        .map_or_else(|| Arc::from([]), |scene| entries(ui, scene));
-    let own = on
-        .patterns()
-        .iter()
-        .filter(|pattern| !entries.iter().any(|entry| entry.pattern == **pattern));
-    let own: Vec<Entry> = own
-        .map(|pattern| Entry {
-            pattern: pattern.clone(),
-            text: pattern.to_string(),
-            indent: 0.0,
-        })
-        .collect();
-    let needle = search.trim().to_lowercase();
-    let is_found = |entry: &&Entry| {
-        needle.is_empty() || entry.pattern.to_string().to_lowercase().contains(&needle)
-    };
-    let listed: Vec<&Entry> = own.iter().chain(entries.iter().filter(is_found)).collect();
-    ScrollArea::vertical()
-        .max_height(LIST_HEIGHT)
-        .auto_shrink([false, true])
-        .show_rows(ui, theme::ROW, listed.len(), |ui, rows| {
-            for (index, entry) in listed.iter().enumerate().take(rows.end).skip(rows.start) {
-                let is_first = index == 0 || listed[index - 1].pattern.kind != entry.pattern.kind;
-                if let Some(is_on) = entry_ui(ui, on, entry, is_first) {
-                    changed = Some(on.with(&entry.pattern, is_on));
-                }
-            }
-        });
-    if listed.is_empty() {
-        ui.label(theme::weak("No part has this name."));
+    let entries = state.session.scene().map(|scene| entries(ui, scene));
+    let entries = entries.unwrap_or_else(|| Arc::from([]));
+    let own = on.patterns().iter();
+    let own = own.filter(|pattern| !entries.iter().any(|entry| entry.pattern == **pattern));
+    let is_found = |entry: &&Entry| entry.answers(&search);
+    let found = entries.iter().filter(is_found).cloned();
+    let listed: Vec<Entry> = own.map(Entry::of_pattern).chain(found).collect();
+    let clicked = list_ui(ui, &listed, |ui, entry, shows_kind| {
+        entry_ui(ui, on, entry, shows_kind)
+    });
+    if let Some((entry, is_on)) = clicked {
+        changed = Some(on.with(&entry.pattern, is_on));
     }
     ui.separator();
     ui.horizontal(|ui| {
@@ -195,22 +185,57 @@ fn picker_ui(ui: &mut Ui, state: &State, commands: &Commands, effect: &Arc<Effec
     }
 }
 
+/// The search above a list of parts. Returns what is searched.
+pub(super) fn part_search_ui(ui: &mut Ui, id: egui::Id, hint: &str, name: String) -> String {
+    ui.set_width(LIST_WIDTH);
+    let mut search: String = ui.data(|data| data.get_temp(id)).unwrap_or_default();
+    let field = TextEdit::singleline(&mut search)
+        .id(id)
+        .hint_text(hint)
+        .desired_width(f32::INFINITY);
+    ui.add(field).accessible_name(name);
+    ui.data_mut(|data| data.insert_temp(id, search.clone()));
+    search
+}
+
+/// A list of parts; `show` is told whether an entry is the first of its kind. Returns the entry
+/// that was changed, and how.
+pub(super) fn list_ui<'a, T>(
+    ui: &mut Ui,
+    listed: &'a [Entry],
+    mut show: impl FnMut(&mut Ui, &Entry, bool) -> Option<T>,
+) -> Option<(&'a Entry, T)> {
+    let mut changed = None;
+    ScrollArea::vertical()
+        .max_height(LIST_HEIGHT)
+        .auto_shrink([false, true])
+        .show_rows(ui, theme::ROW, listed.len(), |ui, rows| {
+            for index in rows {
+                let entry = &listed[index];
+                let is_first = index == 0 || listed[index - 1].pattern.kind != entry.pattern.kind;
+                let shown = ui.horizontal(|ui| {
+                    ui.set_min_height(theme::ROW);
+                    ui.add_space(entry.indent);
+                    show(ui, entry, is_first)
+                });
+                changed = shown.inner.map(|change| (entry, change)).or(changed.take());
+            }
+        });
+    if listed.is_empty() {
+        ui.label(theme::weak("No part has this name."));
+    }
+    changed
+}
+
 /// Returns whether the entry is part of the scope, where that changed.
 fn entry_ui(ui: &mut Ui, on: &Scope, entry: &Entry, shows_kind: bool) -> Option<bool> {
-    ui.horizontal(|ui| {
-        ui.set_min_height(theme::ROW);
-        ui.add_space(entry.indent);
-        let mut is_on = on.patterns().contains(&entry.pattern);
-        let text = RichText::new(&entry.text);
-        let box_ui = ui
-            .checkbox(&mut is_on, text)
-            .accessible_name(entry.pattern.to_string());
-        if shows_kind {
-            ui.label(theme::weak(entry.pattern.kind.plural()));
-        }
-        box_ui.changed().then_some(is_on)
-    })
-    .inner
+    let mut is_on = on.patterns().contains(&entry.pattern);
+    let tick = ui.checkbox(&mut is_on, &entry.text);
+    if shows_kind {
+        ui.label(theme::weak(entry.pattern.kind.plural()));
+    }
+    let tick = tick.accessible_name(entry.pattern.to_string());
+    tick.changed().then_some(is_on)
 }
 
 /// The parts of a scene.

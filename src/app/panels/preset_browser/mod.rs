@@ -1,7 +1,6 @@
 //! The left panel: presets with thumbnails, effects, and scenes with their parameters.
 
 mod arrange;
-mod entry;
 mod menu;
 pub mod pictures;
 mod scenes;
@@ -10,11 +9,10 @@ pub mod toolbar;
 
 use std::time::SystemTime;
 
-use eframe::egui::{self, Align, Rect, RichText, Ui, vec2};
+use eframe::egui::{self, Align, RichText, Ui, vec2};
 
 use self::{
     arrange::{Filter, Item, arrange, tags},
-    entry::{Shown, entry_size, entry_ui},
     menu::{menu_ui, opening},
     pictures::Pictures,
     thumbnails::Size,
@@ -28,6 +26,7 @@ use crate::{
             favorites::{Favorites, Starred},
             scene_loader::SceneKey,
         },
+        picture::effect_picture::THUMBNAIL,
         settings::browsing::{Browsing, Layout, Tab},
         shell::{
             action::Action,
@@ -36,11 +35,12 @@ use crate::{
         },
         widgets::{
             icons::{Icon, icon_button},
-            panel::Panel,
+            panel::{Panel, at_right},
             theme,
+            tile::{Tile, Tiling},
         },
     },
-    preset_file::{self, Folders, GalleryEntry, PresetFile},
+    preset_file::{self, Folders, GalleryEntry, Origin, PresetFile},
 };
 
 /// The left panel: presets with thumbnails, effects, and scenes with their parameters.
@@ -207,24 +207,18 @@ impl PresetBrowser {
         if let Some(deleted) = state.files.deleted.last() {
             ui.horizontal(|ui| {
                 ui.set_min_height(theme::ROW);
-                ui.with_layout(egui::Layout::right_to_left(Align::Center), |ui| {
+                at_right(ui, |ui| {
                     if icon_button(ui, Icon::Cross, "Keep it in the trash").clicked() {
                         commands.send(Command::Library(LibraryCommand::ForgetDeleted));
                     }
-                    let undo = ui
-                        .button("Undo")
-                        .on_hover_text(format!("Put {} back", deleted.path.display()));
+                    let hint = format!("Put {} back", deleted.path.display());
+                    let undo = ui.button("Undo").on_hover_text(hint);
                     if undo.accessible_name("Undo the deletion").clicked() {
                         commands.send(Command::Library(LibraryCommand::Restore));
                     }
                     ui.with_layout(egui::Layout::left_to_right(Align::Center), |ui| {
-                        ui.add(
-                            egui::Label::new(theme::weak(format!(
-                                "{} was deleted",
-                                deleted.name()
-                            )))
-                            .truncate(),
-                        );
+                        let text = format!("{} was deleted", deleted.name());
+                        ui.add(egui::Label::new(theme::weak(text)).truncate());
                     });
                 });
             });
@@ -241,67 +235,97 @@ impl PresetBrowser {
         let open = &state.session.preset_file;
         let opened = FileId::of(open);
         let is_other = self.shown.as_ref() != Some(&opened);
-        let (size, columns) = entry_size(self.layout, ui.available_width());
-        let quality = if self.layout == Layout::Grid {
-            Size::Large
-        } else {
-            Size::Small
+        let (tiling, quality) = match self.layout {
+            Layout::Grid => (GRID, Size::Large),
+            Layout::List => (LIST, Size::Small),
         };
-        let gap = if self.layout == Layout::Grid {
-            theme::GAP
-        } else {
-            theme::HALF
-        };
-        for row in self.listed.chunks(columns) {
-            let (line, _) =
-                ui.allocate_exact_size(vec2(ui.available_width(), size.y), egui::Sense::hover());
-            for (column, index) in row.iter().enumerate() {
-                let entry = &self.entries[*index];
-                let rect =
-                    Rect::from_min_size(line.min + vec2(column as f32 * (size.x + gap), 0.0), size);
-                let is_open = open.is_look_of(&entry.id, entry.path.as_deref());
-                if is_open && is_other {
-                    ui.scroll_to_rect(rect, None);
-                    self.shown = Some(opened.clone());
-                }
-                let shown = Shown {
-                    entry,
-                    picture: self.pictures.picture(
-                        entry,
-                        &state.session,
-                        quality,
-                        ui.is_rect_visible(rect),
-                    ),
-                    is_open,
-                    is_modified: is_open && state.session.is_modified(),
-                    is_favorite: self.items[*index].is_favorite,
-                };
-                let responses = entry_ui(ui, &shown, self.layout, rect);
-                responses
-                    .entry
-                    .context_menu(|ui| menu_ui(ui, entry, commands));
-                if responses.star.clicked() {
-                    commands.send(Command::Library(LibraryCommand::Star(
-                        Starred::Preset,
-                        entry.id.clone(),
-                        !shown.is_favorite,
-                    )));
-                }
-                if responses.entry.clicked() {
-                    let with_scene = ui.input(|i| i.modifiers.shift || i.modifiers.alt);
-                    commands.send(opening(
-                        entry,
-                        if with_scene {
-                            Manner::WithScene
-                        } else {
-                            Manner::Look
-                        },
-                    ));
-                }
+        let is_modified = state.session.is_modified();
+        tiling.show(ui, &self.listed, |ui, index, rect| {
+            let (entry, item) = (&self.entries[*index], &self.items[*index]);
+            let is_open = open.is_look_of(&entry.id, entry.path.as_deref());
+            if is_open && is_other {
+                ui.scroll_to_rect(rect, None);
+                self.shown = Some(opened.clone());
             }
-            ui.add_space(gap - ui.spacing().item_spacing.y);
+            let is_seen = ui.is_rect_visible(rect);
+            let about = match &entry.preset_file {
+                Ok(preset_file) => preset_file.preset.about.clone(),
+                Err(error) => error.to_string(),
+            };
+            let picture = self
+                .pictures
+                .picture(entry, &state.session, quality, is_seen);
+            let tile = Tile {
+                kind: "Preset",
+                id: &entry.id,
+                title: entry.title(),
+                name: entry.title().to_owned(),
+                about: about.clone(),
+                picture,
+                is_chosen: is_open,
+                is_modified: is_open && is_modified,
+                is_favorite: item.is_favorite,
+                is_faulty: entry.preset_file.is_err(),
+            };
+            let [tile, star] = tile.show(ui, tiling, rect, egui::Sense::click());
+            tile.context_menu(|ui| menu_ui(ui, entry, commands));
+            if star.clicked() {
+                let id = entry.id.clone();
+                let star = LibraryCommand::Star(Starred::Preset, id, !item.is_favorite);
+                commands.send(Command::Library(star));
+            }
+            if tile.clicked() {
+                let with_scene = ui.input(|i| i.modifiers.shift || i.modifiers.alt);
+                let manner = match with_scene {
+                    true => Manner::WithScene,
+                    false => Manner::Look,
+                };
+                commands.send(opening(entry, manner));
+            }
+            tile.on_hover_ui(|ui| about_ui(ui, entry, item, &about));
+        });
+    }
+}
+
+const GRID: Tiling = Tiling {
+    width: 104.0,
+    name: 24.0,
+    margin: 4.0,
+    gap: theme::GAP,
+    list: None,
+};
+const LIST: Tiling = Tiling {
+    gap: theme::HALF,
+    list: Some(THUMBNAIL[0] as f32 / 2.0),
+    ..GRID
+};
+
+/// What an entry says on hover.
+fn about_ui(ui: &mut Ui, entry: &GalleryEntry, item: &Item, about: &str) {
+    ui.horizontal(|ui| {
+        ui.label(theme::strong(entry.title()));
+        ui.label(theme::weak(&entry.id));
+    });
+    ui.label(about);
+    if entry.preset_file.is_ok() {
+        let effects = match item.effects.join(", ") {
+            none if none.is_empty() => "none".into(),
+            effects => effects,
+        };
+        ui.label(theme::weak(format!("Effects: {effects}")));
+        if !item.tags.is_empty() {
+            ui.label(theme::weak(format!("Tags: {}", item.tags.join(", "))));
         }
     }
+    let mut source = match (&entry.path, entry.origin) {
+        (Some(path), _) => path.display().to_string(),
+        (None, Origin::Builtin) => "Built in".into(),
+        (None, _) => String::new(),
+    };
+    if !entry.shadows.is_empty() {
+        source += &format!("; hides {} of the same name", entry.shadows.len());
+    }
+    ui.label(theme::weak(source));
 }
 
 /// Says how many presets are listed while not all are.

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use eframe::egui::{self, Align2, DragValue, Label, RichText, Sense, Ui, vec2};
+use eframe::egui::{self, Align2, DragValue, Label, Sense, Ui, vec2};
 
 use crate::{
     app::{
@@ -68,7 +68,7 @@ fn shown_ui(ui: &mut Ui, session: &Session) {
     };
     // A letter is some 8 points wide.
     let short = cut_middle(&source, (ui.available_width() / 8.0).max(8.0) as usize);
-    ui.add(Label::new(RichText::new(short).color(theme::text_strong()).strong()).truncate())
+    ui.add(Label::new(theme::strong(short).strong()).truncate())
         .on_hover_text(&source);
     if session.scenes.is_loading() {
         ui.horizontal(|ui| {

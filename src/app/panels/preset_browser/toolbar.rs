@@ -1,12 +1,14 @@
 //! The head of the gallery: search, order, favorites, list or grid, and tags to choose.
 
-use eframe::egui::{self, Align, Button, ComboBox, Response, RichText, TextEdit, Ui, vec2};
+use eframe::egui::{Button, RichText, Ui, vec2};
 
 use super::arrange::Filter;
 use crate::app::{
     settings::browsing::{Layout, Sort},
     widgets::{
-        icons::{Icon, icon_button, toggle_button},
+        form::{menu_ui, search_ui},
+        icons::{Icon, star_toggle, toggle_button},
+        panel::at_right,
         theme,
     },
 };
@@ -24,16 +26,13 @@ pub fn toolbar_ui(
 ) {
     search_ui(ui, &mut filter.search, "Search presets");
     ui.horizontal(|ui| {
-        let menu = ComboBox::from_id_salt("sort presets")
-            .width(112.0)
-            .selected_text(filter.sort.label());
-        let menu = menu.show_ui(ui, |ui| {
-            for sort in Sort::ALL {
-                ui.selectable_value(&mut filter.sort, sort, sort.label());
-            }
-        });
-        menu.response.accessible_name("Order of the presets");
-        ui.with_layout(egui::Layout::right_to_left(Align::Center), |ui| {
+        let sorts = Sort::ALL.map(|sort| (sort, sort.label(), ""));
+        let now = (filter.sort.label(), 112.0);
+        if let (Some(sort), _) = menu_ui(ui, "Order of the presets", now, Some(&filter.sort), sorts)
+        {
+            filter.sort = sort;
+        }
+        at_right(ui, |ui| {
             ui.spacing_mut().item_spacing.x = 2.0;
             for (icon, to, name) in [
                 (Icon::Grid, Layout::Grid, "Large pictures"),
@@ -46,44 +45,10 @@ pub fn toolbar_ui(
                     *layout = to;
                 }
             }
-            let star = if filter.only_favorites {
-                Icon::StarFull
-            } else {
-                Icon::Star
-            };
-            if toggle_button(ui, star, filter.only_favorites, "Favorites only")
-                .on_hover_text("Favorites only")
-                .clicked()
-            {
-                filter.only_favorites = !filter.only_favorites;
-            }
+            star_toggle(ui, &mut filter.only_favorites, "Favorites only");
         });
     });
     tags_ui(ui, filter, shows_all_tags, tags);
-}
-
-/// A field for a search, with a button that clears it.
-pub fn search_ui(ui: &mut Ui, search: &mut String, name: &str) -> Response {
-    ui.horizontal(|ui| {
-        let clear = if search.is_empty() {
-            0.0
-        } else {
-            ui.spacing().interact_size.y + ui.spacing().item_spacing.x
-        };
-        let field = TextEdit::singleline(search)
-            .hint_text(name)
-            .char_limit(120)
-            .desired_width(ui.available_width() - clear);
-        let field = ui.add(field).accessible_name(name);
-        if field.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Escape)) {
-            search.clear();
-        }
-        if clear > 0.0 && icon_button(ui, Icon::Cross, &format!("Clear: {name}")).clicked() {
-            search.clear();
-        }
-        field
-    })
-    .inner
 }
 
 fn tags_ui(ui: &mut Ui, filter: &mut Filter, shows_all: &mut bool, tags: &[(String, usize)]) {

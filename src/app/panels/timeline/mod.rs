@@ -8,7 +8,7 @@ mod tracks;
 
 use std::collections::BTreeSet;
 
-use eframe::egui::{self, Align, DragValue, Layout, Rect, RichText, Ui, pos2, vec2};
+use eframe::egui::{self, Align, DragValue, Layout, Rect, Ui, pos2, vec2};
 
 use self::span::Span;
 use crate::{
@@ -25,7 +25,7 @@ use crate::{
         },
         widgets::{
             icons::{Icon, icon_button, toggle_button},
-            panel::Panel,
+            panel::{Panel, at_right},
             theme,
         },
     },
@@ -93,7 +93,7 @@ impl Timeline {
         let (easing, is_stepped) = (track.keys()[index].easing, steps(track.field()));
         ui.spacing_mut().item_spacing.x = 6.0;
         ui.separator();
-        ui.add(egui::Label::new(RichText::new(key.path()).color(theme::text_strong())).truncate());
+        ui.add(egui::Label::new(theme::strong(key.path())).truncate());
         let mut time_s = key.time_s;
         let drag = DragValue::new(&mut time_s)
             .speed(0.01)
@@ -146,7 +146,7 @@ impl Panel for Timeline {
             ui.set_height(TRANSPORT);
             transport_ui(ui, session, commands);
             time_ui(ui, session, commands);
-            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            at_right(ui, |ui| {
                 // A phone has no room for it.
                 if ui.available_width() >= RANGE {
                     range_ui(ui, session, commands);

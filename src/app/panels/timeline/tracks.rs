@@ -20,6 +20,7 @@ use crate::{
         shell::command::{Command, Commands},
         widgets::{
             icons::{Icon, icon_button},
+            panel::describe,
             theme,
         },
     },
@@ -157,13 +158,11 @@ impl Tracks<'_> {
             egui::Id::unique((track.path(), "mark", index)),
             Sense::click_and_drag(),
         );
-        response.widget_info(|| {
-            egui::WidgetInfo::labeled(
-                egui::Role::Button,
-                true,
-                format!("Key {} {:.3} s", track.path(), key.time_s),
-            )
-        });
+        describe(
+            &response,
+            egui::Role::Button,
+            format!("Key {} {:.3} s", track.path(), key.time_s),
+        );
         let is_selected = self.selected.as_ref() == Some(&id);
         paint_mark(
             ui,

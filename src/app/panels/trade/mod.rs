@@ -1,7 +1,7 @@
 //! The panel Trade: choose axes, measure every combination of their options, and see the error over
 //! the time as a plot and a table. A click pins the options of a combination.
 
-mod plot;
+pub mod plot;
 mod table;
 
 use std::sync::Arc;
@@ -26,7 +26,7 @@ use crate::{
         },
         widgets::{
             icons::{Icon, icon_button},
-            panel::Panel,
+            panel::{Panel, at_right, main_button},
             text::first_line,
             theme,
         },
@@ -194,7 +194,7 @@ impl TradePanel {
         ui.horizontal(|ui| {
             ui.label(theme::heading("Trade"));
             ui.label(theme::weak("time and error of the accuracy options"));
-            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            at_right(ui, |ui| {
                 if icon_button(ui, Icon::Cross, "Close Trade").clicked() {
                     commands.perform(Action::Trade);
                 }
@@ -238,10 +238,8 @@ impl TradePanel {
                         ui.add_enabled(!is_measuring, checkbox)
                             .on_hover_text(hint)
                             .accessible_name(format!("Measure {}", axis.name));
-                        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                            ui.label(
-                                theme::weak(format!("{} options", axis.words.len())).size(11.0),
-                            );
+                        at_right(ui, |ui| {
+                            ui.label(theme::small(format!("{} options", axis.words.len())));
                         });
                     });
                 }
@@ -256,7 +254,6 @@ impl TradePanel {
             .map(|inputs| self.request(state, inputs));
         ui.horizontal(|ui| {
             let is_ready = request.is_some() && count >= 2;
-            let button = egui::Button::new("Measure").fill(theme::accent_ground()).min_size(egui::vec2(84.0, theme::ROW));
             let reason = match count {
                 _ if shown.is_none() => "There is no picture yet",
                 0..2 => "Choose an axis with more than one option",
@@ -266,18 +263,22 @@ impl TradePanel {
                 format!(" A page measures a picture of at most {most} pixels, and a sample is the mean of repeated frames.")
             });
             let hint = format!(
-                "Draw every combination {SAMPLES} times on a second device, and compare each with the oracle. While you work in the \
-                 window, the measurement waits.{limit}"
+                "Draw every combination {SAMPLES} times on a second device, and compare each with the oracle. While you work in the window, the measurement waits.{limit}"
             );
-            let button = ui.add_enabled(is_ready, button).on_hover_text(hint).on_disabled_hover_text(reason);
+            let button = main_button("Measure").min_size(egui::vec2(84.0, theme::ROW));
+            let button = ui.add_enabled(is_ready, button).on_hover_text(hint);
+            let button = button.on_disabled_hover_text(reason);
             if let Some((request, workload)) = request.as_ref().filter(|_| button.clicked()) {
                 self.start(commands, request.clone(), *workload);
             }
-            let color = if count > MAX_COMBINATIONS { theme::red() } else { theme::text_weak() };
-            ui.label(RichText::new(format!("{count} combinations")).color(color));
+            let text = RichText::new(format!("{count} combinations"));
+            ui.label(text.color(match count > MAX_COMBINATIONS {
+                true => theme::red(),
+                false => theme::text_weak(),
+            }));
         });
         if let Some((_, workload)) = request.as_ref().filter(|_| count >= 2) {
-            ui.label(theme::weak(format!("takes {}", about(workload.pace(&self.rates).left_s()))).size(11.0))
+            ui.label(theme::small(format!("takes {}", about(workload.pace(&self.rates).left_s()))))
                 .on_hover_text("How long it is expected to take, from the size and the time of the picture and from earlier measurements");
         }
         if let Some(error) = &self.error {
@@ -446,6 +447,6 @@ fn progress_ui(ui: &mut Ui, progress: &Progress) {
             progress.cancel();
         }
     });
-    ui.add(egui::Label::new(theme::weak(what).size(11.0)).truncate());
+    ui.add(egui::Label::new(theme::small(what)).truncate());
     ui.request_repaint_after_secs(0.1);
 }

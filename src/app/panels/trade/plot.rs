@@ -2,12 +2,12 @@
 //! egui_plot has no such axes, so points are plotted by their logarithms and ticks are labeled with
 //! the values themselves.
 
-use eframe::egui::{self, Pos2, Rect, RichText, Sense, Ui, Vec2, vec2};
+use eframe::egui::{self, Color32, Painter, Pos2, Rect, Response, RichText, Sense, Ui, Vec2, vec2};
 use egui_plot::{GridMark, HLine, Line, LineStyle, Plot, PlotPoint, PlotPoints};
 
 use crate::app::{
     trade::point::{Metric, Point, Standing, standings},
-    widgets::{text::short, theme},
+    widgets::{panel::describe, text::short, theme},
 };
 
 /// Least distance of two points, so that each can be clicked, points of the screen.
@@ -136,26 +136,44 @@ struct Plotted {
     bar: [f64; 2],
 }
 
+impl Shown<'_> {
+    /// The points that have both a time and an error.
+    fn plotted(&self) -> Vec<Plotted> {
+        let found = self.points.iter().enumerate();
+        let found = found.filter_map(|(i, point)| {
+            let (ms, error) = point.position(self.metric)?;
+            Some(Plotted {
+                i,
+                at: [ms.p50, error],
+                bar: [ms.p5, ms.p95],
+            })
+        });
+        found.collect()
+    }
+}
+
+/// Color, whether it is filled, and radius of a mark.
+fn style(standing: Option<Standing>) -> (Color32, bool, f32) {
+    match standing {
+        Some(Standing::Front) => (theme::accent(), true, 4.5),
+        Some(Standing::Tied) => (theme::text(), true, 3.5),
+        Some(Standing::Dominated) | None => (theme::text_weak(), false, 3.5),
+    }
+}
+
+fn mark_ui(painter: &Painter, at: Pos2, (color, is_filled, radius): (Color32, bool, f32)) {
+    match is_filled {
+        true => painter.circle_filled(at, radius, color),
+        false => painter.circle(at, radius, theme::panel(), (1.2, color)),
+    };
+}
+
 /// Draws the plot into the available space. Returns the index of the point that was clicked.
 pub fn plot_ui(ui: &mut Ui, shown: &Shown<'_>) -> Option<usize> {
-    let Shown {
-        points,
-        metric,
-        current,
-    } = *shown;
-    let found = points
-        .iter()
-        .enumerate()
-        .filter_map(|(i, point)| Some((i, point.position(metric)?)));
-    let plotted: Vec<Plotted> = found
-        .map(|(i, (ms, error))| Plotted {
-            i,
-            at: [ms.p50, error],
-            bar: [ms.p5, ms.p95],
-        })
-        .collect();
+    let plotted = shown.plotted();
     if plotted.is_empty() {
-        let text = format!("No combination has both a time and its {}.", metric.name());
+        let name = shown.metric.name();
+        let text = format!("No combination has both a time and its {name}.");
         ui.centered_and_justified(|ui| ui.label(theme::weak(text)));
         return None;
     }
@@ -163,137 +181,145 @@ pub fn plot_ui(ui: &mut Ui, shown: &Shown<'_>) -> Option<usize> {
         &plotted.iter().map(|p| p.at).collect::<Vec<_>>(),
         &plotted.iter().map(|p| p.bar).collect::<Vec<_>>(),
     );
-    let standings = standings(points, metric);
-    let mut front: Vec<[f64; 2]> = plotted
-        .iter()
-        .filter(|p| standings[p.i] == Some(Standing::Front))
-        .map(|p| p.at)
-        .collect();
-    front.sort_by(|a, b| a[0].total_cmp(&b[0]));
-    let along: PlotPoints<'_> = front
-        .into_iter()
-        .map(|position| span.at(position))
-        .collect();
-    let style = |i: usize| match standings[i] {
-        Some(Standing::Front) => (theme::accent(), true, 4.5),
-        Some(Standing::Tied) => (theme::text(), true, 3.5),
-        Some(Standing::Dominated) | None => (theme::text_weak(), false, 3.5),
-    };
-    let response = Plot::new("trade plot")
+    let standings = standings(shown.points, shown.metric);
+    let (frame, true_places) = lines_ui(ui, shown.metric, &plotted, &span, &standings);
+    let places = spread(&true_places);
+    let painter = ui.painter_at(frame);
+    let mut clicked = None;
+    for ((p, &place), &true_place) in plotted.iter().zip(&places).zip(&true_places) {
+        let style = style(standings[p.i]);
+        painter.line_segment([true_place, place], (1.0, style.0.gamma_multiply(0.5)));
+        mark_ui(&painter, place, style);
+        if (shown.current)(&shown.points[p.i]) {
+            painter.circle_stroke(place, 7.0, (1.5, theme::amber()));
+        }
+    }
+    for (p, at) in plotted.iter().zip(places) {
+        if point_ui(ui, shown, p.i, standings[p.i], at).clicked() {
+            clicked = Some(p.i);
+        }
+    }
+    clicked
+}
+
+/// A plot that shows what it is given, and answers no pointer.
+pub fn still_plot(id: &str) -> Plot<'_> {
+    Plot::new(id)
         .allow_drag(false)
         .allow_zoom(false)
         .allow_scroll(false)
         .allow_boxed_zoom(false)
         .allow_axis_zoom_drag(false)
         .allow_double_click_reset(false)
+        .show_background(false)
         .show_x(false)
         .show_y(false)
-        .show_background(false)
         .grid_color(theme::line())
         .grid_fade(0.0)
         .sense(Sense::hover())
         .label_formatter(|_| None)
+}
+
+/// Axes, the front and the spreads. Returns where the plot is, and each of its points.
+fn lines_ui(
+    ui: &mut Ui,
+    metric: Metric,
+    plotted: &[Plotted],
+    span: &Span,
+    standings: &[Option<Standing>],
+) -> (Rect, Vec<Pos2>) {
+    let front = plotted
+        .iter()
+        .filter(|p| standings[p.i] == Some(Standing::Front));
+    let mut front: Vec<[f64; 2]> = front.map(|p| p.at).collect();
+    front.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    let along: Vec<_> = front
+        .into_iter()
+        .map(|position| span.at(position))
+        .collect();
+    let (exact, x, y) = (span.exact, span.x, span.y);
+    let error = format!("{}, {}", metric.name(), metric.unit());
+    let response = still_plot("trade plot")
         .x_axis_label(RichText::new("milliseconds, median").size(11.0))
-        .y_axis_label(RichText::new(format!("{}, {}", metric.name(), metric.unit())).size(11.0))
-        .x_grid_spacer(|_| marks(span.x))
-        .y_grid_spacer(|_| {
-            let above = [span.exact + 0.5 * DROP, span.y[1]];
-            let mut marks = marks(above);
+        .y_axis_label(RichText::new(error).size(11.0))
+        .x_grid_spacer(move |_| marks(x))
+        .y_grid_spacer(move |_| {
+            let mut marks = marks([exact + 0.5 * DROP, y[1]]);
             marks.push(GridMark {
-                value: span.exact,
+                value: exact,
                 step_size: 10.0,
             });
             marks
         })
         .x_axis_formatter(|mark, _| short(10f64.powf(mark.value)))
-        .y_axis_formatter(move |mark, _| {
-            if (mark.value - span.exact).abs() < 1e-9 {
-                "exact".into()
-            } else {
-                short(10f64.powf(mark.value))
-            }
+        .y_axis_formatter(move |mark, _| match (mark.value - exact).abs() < 1e-9 {
+            true => "exact".into(),
+            false => short(10f64.powf(mark.value)),
         })
         .y_axis_min_width(46.0)
         .show(ui, |plot| {
-            plot.set_plot_bounds_x(span.x[0]..=span.x[1]);
-            plot.set_plot_bounds_y(span.y[0]..=span.y[1]);
-            let line = HLine::new("exact", span.exact)
+            plot.set_plot_bounds_x(x[0]..=x[1]);
+            plot.set_plot_bounds_y(y[0]..=y[1]);
+            let line = HLine::new("exact", exact)
                 .color(theme::green().gamma_multiply(0.7))
                 .width(1.0);
             plot.hline(line.style(LineStyle::dashed_dense()).allow_hover(false));
-            plot.line(
-                Line::new("front", along)
-                    .color(theme::accent().gamma_multiply(0.7))
-                    .width(1.5)
-                    .allow_hover(false),
-            );
-            for &Plotted { i, at, bar } in &plotted {
-                let ends: PlotPoints<'_> =
-                    bar.iter().map(|ms| [ms.log10(), span.at(at)[1]]).collect();
+            let mut line = |name: &str, points: Vec<[f64; 2]>, color: Color32| {
                 plot.line(
-                    Line::new("", ends)
-                        .color(style(i).0.gamma_multiply(0.6))
+                    Line::new(name, PlotPoints::from(points))
+                        .color(color)
                         .width(1.5)
                         .allow_hover(false),
                 );
+            };
+            line("front", along, theme::accent().gamma_multiply(0.7));
+            for p in plotted {
+                let height = span.at(p.at)[1];
+                let ends = p.bar.iter().map(|ms| [ms.log10(), height]).collect();
+                line("", ends, style(standings[p.i]).0.gamma_multiply(0.6));
             }
         });
-    let true_places: Vec<Pos2> = plotted
-        .iter()
-        .map(|p| {
-            let [x, y] = span.at(p.at);
-            response
-                .transform
-                .position_from_point(&PlotPoint::new(x, y))
-        })
-        .collect();
-    let places = spread(&true_places);
-    let painter = ui.painter_at(response.response.rect);
-    for ((p, &place), &true_place) in plotted.iter().zip(&places).zip(&true_places) {
-        let (color, filled, radius) = style(p.i);
-        painter.line_segment([true_place, place], (1.0, color.gamma_multiply(0.5)));
-        match filled {
-            true => painter.circle_filled(place, radius, color),
-            false => painter.circle(place, radius, theme::panel(), (1.2, color)),
-        };
-        if current(&points[p.i]) {
-            painter.circle_stroke(place, 7.0, (1.5, theme::amber()));
-        }
+    let place = |p: &Plotted| {
+        let [x, y] = span.at(p.at);
+        response
+            .transform
+            .position_from_point(&PlotPoint::new(x, y))
+    };
+    (response.response.rect, plotted.iter().map(place).collect())
+}
+
+/// What takes the pointer over a point, and says what it is.
+fn point_ui(
+    ui: &Ui,
+    shown: &Shown<'_>,
+    i: usize,
+    standing: Option<Standing>,
+    at: Pos2,
+) -> Response {
+    let point = &shown.points[i];
+    let area = Rect::from_center_size(at, Vec2::splat(APART));
+    let handle = ui.interact(area, egui::Id::unique(("trade point", i)), Sense::click());
+    describe(
+        &handle,
+        egui::Role::Button,
+        format!("Point {}", point.pins.words()),
+    );
+    if handle.hovered() || handle.has_focus() {
+        ui.painter()
+            .circle_stroke(at, 7.0, (1.5, theme::text_strong()));
+        ui.set_cursor_icon(egui::CursorIcon::PointingHand);
     }
-    let mut clicked = None;
-    for (&Plotted { i, .. }, &at) in plotted.iter().zip(&places) {
-        let handle = ui.interact(
-            Rect::from_center_size(at, Vec2::splat(APART)),
-            egui::Id::unique(("trade point", i)),
-            Sense::click(),
-        );
-        let words = points[i].pins.words();
-        handle.widget_info(|| {
-            egui::WidgetInfo::labeled(egui::Role::Button, true, format!("Point {words}"))
-        });
-        if handle.hovered() || handle.has_focus() {
-            ui.painter()
-                .circle_stroke(at, 7.0, (1.5, theme::text_strong()));
-            ui.set_cursor_icon(egui::CursorIcon::PointingHand);
+    let role = match standing {
+        _ if (shown.current)(point) => "used by this preset",
+        Some(Standing::Front) => {
+            "on the Pareto front: every point that is as exact is slower. Click to use it."
         }
-        let role = match () {
-            () if current(&points[i]) => "used by this preset",
-            () if standings[i] == Some(Standing::Front) => {
-                "on the Pareto front: every point that is as exact is slower. Click to use it."
-            }
-            () if standings[i] == Some(Standing::Tied) => {
-                "as quick as another that is as exact, within the noise. Click to use it."
-            }
-            () => "dominated: another is as exact and quicker. Click to use it.",
-        };
-        if handle
-            .on_hover_ui(|ui| details_ui(ui, &points[i], role))
-            .clicked()
-        {
-            clicked = Some(i);
+        Some(Standing::Tied) => {
+            "as quick as another that is as exact, within the noise. Click to use it."
         }
-    }
-    clicked
+        _ => "dominated: another is as exact and quicker. Click to use it.",
+    };
+    handle.on_hover_ui(|ui| details_ui(ui, point, role))
 }
 
 /// Where points are shown that stand at `places`: those that would lie over each other are pushed
@@ -322,21 +348,14 @@ fn spread(places: &[Pos2]) -> Vec<Pos2> {
 
 /// Options and numbers of a point.
 fn details_ui(ui: &mut Ui, point: &Point, role: &str) {
-    ui.label(
-        RichText::new(point.pins.words().replace(' ', "\n"))
-            .monospace()
-            .color(theme::text_strong()),
-    );
+    let words = point.pins.words().replace(' ', "\n");
+    ui.label(theme::strong(words).monospace());
     ui.label(point.ms.map_or_else(
         || "not timed".to_owned(),
         |ms| {
-            format!(
-                "{} ms median, {} to {} ms from 5 to 95 %, {} samples",
-                short(ms.p50),
-                short(ms.p5),
-                short(ms.p95),
-                point.samples
-            )
+            let [median, low, high] = [ms.p50, ms.p5, ms.p95].map(short);
+            let samples = point.samples;
+            format!("{median} ms median, {low} to {high} ms from 5 to 95 %, {samples} samples")
         },
     ));
     for metric in Metric::of(std::slice::from_ref(point)) {
@@ -358,21 +377,16 @@ fn details_ui(ui: &mut Ui, point: &Point, role: &str) {
 /// The legend of the marks, from right to left.
 pub fn legend_ui(ui: &mut Ui) {
     let marks = [
-        (theme::amber(), false, 6.0, "this preset"),
-        (theme::text_weak(), false, 3.5, "dominated"),
-        (theme::text(), true, 3.5, "within the noise"),
-        (theme::accent(), true, 4.0, "on the front"),
+        ((theme::amber(), false, 6.0), "this preset"),
+        (style(Some(Standing::Dominated)), "dominated"),
+        (style(Some(Standing::Tied)), "within the noise"),
+        (style(Some(Standing::Front)), "on the front"),
     ];
     ui.spacing_mut().item_spacing.x = 4.0;
-    for (color, filled, radius, text) in marks {
-        ui.label(RichText::new(text).size(11.0).color(theme::text_weak()));
+    for (mark, text) in marks {
+        ui.label(theme::small(text));
         let (rect, _) = ui.allocate_exact_size(vec2(14.0, 16.0), Sense::hover());
-        match filled {
-            true => ui.painter().circle_filled(rect.center(), radius, color),
-            false => ui
-                .painter()
-                .circle_stroke(rect.center(), radius, (1.2, color)),
-        };
+        mark_ui(ui.painter(), rect.center(), mark);
         ui.add_space(theme::HALF);
     }
 }

@@ -42,7 +42,7 @@ pub fn table_ui(
                         .chain(metrics.iter().map(|metric| errors[*metric as usize]))
                         .chain([""])
                     {
-                        ui.label(theme::weak(heading).size(11.0));
+                        ui.label(theme::small(heading));
                     }
                     ui.end_row();
                     for i in order {

@@ -24,7 +24,7 @@ pub fn badges_ui(ui: &mut Ui, state: &State, rect: Rect) {
             for (subject, text) in faults {
                 theme::toast_frame(theme::red()).show(ui, |ui| {
                     ui.label(RichText::new(title(subject)).color(theme::red()).strong());
-                    ui.label(RichText::new(text).monospace().color(theme::text_strong()));
+                    ui.label(theme::strong(text).monospace());
                 });
             }
         });

@@ -158,11 +158,8 @@ fn plate(
             ui.set_min_width(ui.available_width());
             ui.spacing_mut().item_spacing.y = 2.0;
             ui.horizontal(|ui| {
-                ui.add(
-                    egui::Label::new(RichText::new(title).strong().color(theme::text_strong()))
-                        .truncate(),
-                )
-                .on_hover_text(doc);
+                ui.add(egui::Label::new(theme::strong(title).strong()).truncate())
+                    .on_hover_text(doc);
                 buttons(ui);
             });
             ui.horizontal(|ui| {

@@ -1,6 +1,6 @@
 //! What is compiled for the next picture, over the picture that stays until then.
 
-use eframe::egui::{self, Rect, RichText, Sense, Ui, vec2};
+use eframe::egui::{self, Rect, Sense, Ui, vec2};
 
 use crate::app::{shell::state::State, widgets::theme};
 
@@ -29,7 +29,7 @@ pub fn compiling_ui(ui: &mut Ui, state: &State, rect: Rect) {
             theme::toast_frame(theme::accent()).show(ui, |ui| {
                 ui.horizontal(|ui| {
                     spinner(ui, state.now_s);
-                    ui.label(RichText::new(text).color(theme::text_strong()));
+                    ui.label(theme::strong(text));
                 });
             });
         });

@@ -16,7 +16,7 @@ use crate::{
             log::Level,
             state::State,
         },
-        widgets::{text::short, theme},
+        widgets::{panel::describe, text::short, theme},
     },
     scene::{Bounds, Scene, pick, view::View},
 };
@@ -120,7 +120,7 @@ impl Paper<'_> {
         let response = self
             .ui
             .interact(plate, egui::Id::unique(("guide", id)), Sense::hover());
-        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, text));
+        describe(&response, egui::Role::Label, text);
     }
 
     fn bounding_box(&self, bounds: &Bounds) {

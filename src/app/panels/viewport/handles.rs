@@ -14,7 +14,7 @@ use crate::{
             command::{Commands, Edit, Parameter},
             state::State,
         },
-        widgets::theme,
+        widgets::{panel::describe, theme},
     },
     params::{Measure, Stored as _},
     scene::{Scene, pick, view::View},
@@ -89,9 +89,7 @@ impl Handle {
         let response = ui
             .interact(area, egui::Id::unique(("handle", &name)), Sense::drag())
             .on_hover_cursor(CursorIcon::Grab);
-        response.widget_info(|| {
-            egui::WidgetInfo::labeled(egui::Role::Slider, true, format!("Handle {name}"))
-        });
+        describe(&response, egui::Role::Slider, format!("Handle {name}"));
         let is_active = response.hovered() || response.dragged();
         // A handle is in the way of looking: it shows while the pointer is over the picture.
         if is_active || ui.rect_contains_pointer(at) {

@@ -8,7 +8,7 @@ use crate::{
     app::{
         editing::session::Session,
         shell::command::{Commands, Edit, Parameter},
-        widgets::theme,
+        widgets::{panel::describe, theme},
     },
     effects::{Stack, shadow},
     math::srgb_byte,
@@ -112,7 +112,7 @@ pub fn light_ui(ui: &mut Ui, session: &Session, commands: &Commands, at: Rect) {
     }
     let rect = Rect::from_center_size(center, Vec2::splat(2.0 * RADIUS));
     let response = ui.interact(rect, egui::Id::unique("light direction"), Sense::drag());
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Slider, true, "Light direction"));
+    describe(&response, egui::Role::Slider, "Light direction");
     let toward = light.toward;
     ball_ui(
         ui,

@@ -2,7 +2,10 @@
 
 use eframe::egui::{self, Align2, FontId, Rect, Sense, Ui, pos2, vec2};
 
-use crate::app::{shell::state::State, widgets::theme};
+use crate::app::{
+    shell::state::State,
+    widgets::{panel::describe, theme},
+};
 
 /// Radius of the ring, and lengths of its four strokes, points.
 const RADIUS: f32 = 9.0;
@@ -62,5 +65,5 @@ pub fn marker_ui(ui: &Ui, state: &State, at: Rect) {
         theme::text_strong(),
     );
     let response = ui.interact(plate, egui::Id::unique("marker"), Sense::hover());
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, &marker.text));
+    describe(&response, egui::Role::Label, &marker.text);
 }

@@ -47,7 +47,7 @@ use crate::{
             log::Level,
             state::State,
         },
-        widgets::theme,
+        widgets::{panel::describe, theme},
     },
     effects::Stack,
     preset::AccuracyRequest,
@@ -88,7 +88,7 @@ impl Viewport {
     pub fn interact(&mut self, ui: &mut Ui, state: &State, commands: &Commands) -> Interaction {
         let rect = ui.available_rect_before_wrap();
         let response = ui.allocate_rect(rect, Sense::click_and_drag());
-        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Picture"));
+        describe(&response, egui::Role::Image, "Picture");
         let pixels = (rect.size() * ui.pixels_per_point()).round();
         let max_side = state.picture.screen.gpu.caps.max_texture_side;
         let size = [pixels.x, pixels.y].map(|side| (side.max(0.0) as u32).min(max_side));

@@ -385,10 +385,6 @@ pub const BUILTINS: &[Builtin] = &[
 
 /// Builds the scene of a query, `name?parameter=value&parameter=value`. Missing parameters have
 /// their defaults.
-///
-/// # Errors
-/// If the name or a parameter is unknown, a value is outside its range, or the values ask for too
-/// many triangles.
 pub fn build(query: &str) -> Result<Scene, BuiltinError> {
     let (builtin, values) = query::parse(BUILTINS, query)?;
     let mut scene = (builtin.build)(&values)?;

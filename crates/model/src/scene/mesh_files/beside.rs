@@ -56,9 +56,6 @@ impl<'a, 'b> Beside<'a, 'b> {
 
     /// The texture that shows the image `name`, which messages call `place`; none, with a message,
     /// if it cannot be read.
-    ///
-    /// # Errors
-    /// Loading ends.
     pub fn texture(
         &mut self,
         folder: &Path,

@@ -42,9 +42,6 @@ impl Room {
 
     /// Counts so many bytes of a list that grows, before it does. Such a list takes up to twice as
     /// much.
-    ///
-    /// # Errors
-    /// There is no room for them.
     pub fn take(&mut self, bytes: usize) -> Result<(), LoadError> {
         self.taken += 2 * bytes as u64;
         let most = 2 * self.limits.total_bytes;
@@ -166,9 +163,6 @@ impl Builder {
     }
 
     /// The index of the part with faces of this kind.
-    ///
-    /// # Errors
-    /// There are too many parts.
     pub fn part(&mut self, kind: Kind) -> Result<usize, LoadError> {
         if let Some(&part) = self.by_kind.get(&kind) {
             return Ok(part);
@@ -192,9 +186,6 @@ impl Builder {
     }
 
     /// Counts what a face of so many corners takes while it is read.
-    ///
-    /// # Errors
-    /// There is no room for it.
     pub fn widen(&mut self, corners: usize) -> Result<(), LoadError> {
         if corners > self.widest {
             self.room.take((corners - self.widest) * FACE_BYTES)?;
@@ -246,9 +237,6 @@ impl Builder {
     }
 
     /// Adds a triangle.
-    ///
-    /// # Errors
-    /// A limit is exceeded.
     pub fn triangle(&mut self, part: usize, corners: [Vertex; 3]) -> Result<(), LoadError> {
         self.triangles += 1;
         let most = self.room.limits.triangles;

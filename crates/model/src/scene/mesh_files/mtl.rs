@@ -73,9 +73,6 @@ pub struct Library {
 }
 
 /// Reads the material files that `lines` of an OBJ name, and the images of the materials in `used`.
-///
-/// # Errors
-/// Loading ends.
 pub fn read(
     lines: &[String],
     mut used: HashSet<String>,

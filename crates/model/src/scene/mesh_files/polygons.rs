@@ -10,9 +10,6 @@ pub const MOST_CORNERS: usize = 16_384;
 
 /// Appends the triangles of a polygon to `triangles`, as indices of its corners, which are finite.
 /// False where it has too many corners.
-///
-/// # Errors
-/// The work was canceled.
 pub fn cut(corners: &[DVec3], triangles: &mut Vec<[u32; 3]>) -> Result<bool, Canceled> {
     let count = corners.len() as u32;
     let fan = |triangles: &mut Vec<_>| triangles.extend((2..count).map(|i| [0, i - 1, i]));

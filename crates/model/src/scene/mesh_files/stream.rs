@@ -60,9 +60,6 @@ impl<'a> Stream<'a> {
     }
 
     /// Passes over `count` bytes; false where fewer are left.
-    ///
-    /// # Errors
-    /// As [`Self::bytes`].
     pub fn skip(&mut self, mut count: u64) -> Result<bool, LoadError> {
         if count > self.left() {
             return Ok(false);
@@ -77,9 +74,6 @@ impl<'a> Stream<'a> {
 
     /// Replaces `line` by the next line without its end, which is that of any system; false where
     /// none is left.
-    ///
-    /// # Errors
-    /// As [`Self::bytes`].
     pub fn line(&mut self, line: &mut Vec<u8>) -> Result<bool, LoadError> {
         line.clear();
         if self.left() == 0 {

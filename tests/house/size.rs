@@ -1,0 +1,126 @@
+//! Promise: the house does not grow without payment. Each row holds a ceiling; who raises one
+//! writes beside the number what for, and what was taken away for it.
+
+use std::{fs, path::Path};
+
+/// Bytes of Rust below a folder.
+const RUST: &[(&str, u64)] = &[
+    ("crates/bench", 378_000),
+    ("crates/evaluator", 147_000),
+    ("crates/files", 474_000),
+    ("crates/gpu", 423_000),
+    ("crates/kernels", 245_000),
+    ("crates/model", 1_409_000),
+    ("crates/one_thread", 5_000),
+    ("crates/oracle", 463_000),
+    ("crates/page", 22_000),
+    ("crates/window", 4_000),
+    ("src/app", 1_337_000),
+    ("src/cli", 238_000),
+    ("fuzz", 90_000),
+    ("tests/common", 13_000),
+    ("tests/exact", 306_000),
+    ("tests/house", 775_000),
+    ("tests/lab", 360_000),
+    ("tests/picture", 288_000),
+];
+
+/// Files and bytes of WGSL in `shaders`.
+const SHADERS: (usize, u64) = (178, 447_000);
+
+/// Packages in `Cargo.lock`, of all platforms.
+const PACKAGES: usize = 459;
+
+/// Words of the pages that people read.
+const WORDS: usize = 51_100;
+
+/// Widest line of prose, in characters. Rows of tables and of HTML stand on one line.
+const WIDEST_LINE: usize = 160;
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+/// Paths of all files below a folder whose name ends so.
+fn files_below(folder: &Path, ending: &str) -> Vec<std::path::PathBuf> {
+    let mut found = Vec::new();
+    for entry in fs::read_dir(folder).expect("a folder of the repository") {
+        let path = entry.expect("a folder of the repository").path();
+        if path.is_dir() && !path.ends_with("target") {
+            found.extend(files_below(&path, ending));
+        } else if path.to_string_lossy().ends_with(ending) {
+            found.push(path);
+        }
+    }
+    found
+}
+
+fn bytes_below(folder: &str, ending: &str) -> u64 {
+    files_below(&root().join(folder), ending)
+        .iter()
+        .map(|file| fs::metadata(file).expect("a file of the repository").len())
+        .sum()
+}
+
+/// Pages with their texts: those of the top level, of `docs` and of its decisions.
+fn pages() -> Vec<(String, String)> {
+    let mut files = files_below(&root().join("docs"), ".md");
+    files.extend(["README.md", "CHANGELOG.md", "CONTRIBUTING.md"].map(|name| root().join(name)));
+    files
+        .into_iter()
+        .map(|file| {
+            let text = fs::read_to_string(&file).expect("a page is text");
+            (file.display().to_string(), text)
+        })
+        .collect()
+}
+
+#[test]
+fn nothing_is_above_its_ceiling() {
+    let mut too_much = Vec::new();
+    let mut hold = |what: &str, size: u64, ceiling: u64| {
+        if size > ceiling {
+            too_much.push(format!("{what}: {size}, at most {ceiling}"));
+        }
+    };
+    for (folder, ceiling) in RUST {
+        let bytes = bytes_below(folder, ".rs");
+        assert!(bytes > 0, "{folder} has no Rust: take its row away");
+        hold(folder, bytes, *ceiling);
+    }
+    let shaders = files_below(&root().join("shaders"), ".wgsl").len();
+    hold("files of shaders", shaders as u64, SHADERS.0 as u64);
+    hold(
+        "bytes of shaders",
+        bytes_below("shaders", ".wgsl"),
+        SHADERS.1,
+    );
+    let lock = fs::read_to_string(root().join("Cargo.lock")).expect("the lock file is text");
+    let packages = lock.matches("\n[[package]]\n").count();
+    hold("packages in Cargo.lock", packages as u64, PACKAGES as u64);
+    let words: usize = pages()
+        .iter()
+        .map(|(_, text)| text.split_whitespace().count())
+        .sum();
+    hold("words of documentation", words as u64, WORDS as u64);
+    assert!(too_much.is_empty(), "{}", too_much.join("\n"));
+}
+
+#[test]
+fn no_line_of_a_page_is_too_wide() {
+    let wide: Vec<String> = pages()
+        .iter()
+        .flat_map(|(name, text)| {
+            text.lines()
+                .enumerate()
+                .filter(|(_, line)| !line.trim_start().starts_with(['|', '<']))
+                .filter(|(_, line)| line.chars().count() > WIDEST_LINE)
+                .map(move |(at, _)| format!("{name}:{}", at + 1))
+        })
+        .collect();
+    assert!(
+        wide.is_empty(),
+        "wider than {WIDEST_LINE}: {}",
+        wide.join(", ")
+    );
+}
