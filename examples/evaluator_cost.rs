@@ -13,8 +13,8 @@ use rasterlab::{
         hooks::{Finish, Surface, SurfaceFunction},
     },
     shader::library::Library,
-    stress::scenes::Rng,
 };
+use rasterlab_fuzz::stress::scenes::Rng;
 
 const SURFACES: usize = 256;
 const TURNS: usize = 40;

@@ -2,7 +2,7 @@
 # Looks for hostile input with libFuzzer: sh scripts/fuzz.sh HOURS [TARGET...]
 # Needs the stable toolchain and a C++ compiler. Each target runs ten minutes at a time, in turn, and begins with fuzz/corpus and what earlier
 # runs found worth keeping (target/fuzz/corpus). Input that a target failed on goes to fuzz/found/TARGET and ends the script:
-# cargo run --release -p rasterlab-fuzz -- FILE runs it again.
+# cargo run --release -p rasterlab-fuzz -- inputs FILE runs it again.
 set -eu
 cd "$(dirname "$0")/.."
 hours=${1:?"sh scripts/fuzz.sh HOURS [TARGET...]"}

@@ -21,7 +21,6 @@ import argparse
 import concurrent.futures
 import hashlib
 import os
-import re
 import shutil
 import signal
 import subprocess
@@ -150,14 +149,12 @@ class Campaign:
         self.program = os.path.abspath(args.program)
         if not os.access(self.program, os.X_OK):
             raise Fault(f"{args.program} is no program that can be run")
-        help_text = subprocess.run([self.program, "--help"], capture_output=True, text=True, check=False, timeout=60).stdout
         leave_out = set(args.leave_out)
-        if not re.search(r"^\s+fuzz\b", help_text, re.MULTILINE):
-            say("note: this program has no command fuzz; that step is left out")
-            leave_out.add("fuzz")
-        listed = subprocess.run([self.program, "stress", "--list", "--filter", "d3d-snap,translation"], capture_output=True, check=False, timeout=60)
+        if not os.access(os.path.join(os.path.dirname(self.program), suite.DEVELOPERS), os.X_OK):
+            say(f"note: {suite.DEVELOPERS} does not lie beside the program; its steps are left out: {', '.join(suite.DEVELOPERS_STEPS)}")
+            leave_out.update(suite.DEVELOPERS_STEPS)
         cases = planted.cases(planted.entries()) if args.planted else []
-        self.probes = suite.probes(args.root, args.fuzz, args.fuzz_seed, leave_out, listed.returncode == 0, cases)
+        self.probes = suite.probes(args.root, args.fuzz, args.fuzz_seed, leave_out, cases)
         self.same = {
             "program": file_digest(self.program),
             "shaders": digest(*(part for item in self.texts.items() for part in item)),

@@ -13,7 +13,7 @@
 //! * `rasterlab-gpu` ([`gpu`]): runs the kernels
 //! * `rasterlab-files` ([`host`], [`preset_file`], [`effect_files`], [`film`]): models, presets,
 //!   effects and films on disk
-//! * `rasterlab-bench` ([`stress`], [`baselines`], [`trade`]): extreme cases, and speed beside
+//! * `rasterlab-bench` ([`extremes`], [`baselines`], [`trade`]): extreme cases, and speed beside
 //!   error
 
 #![deny(unsafe_code)]
@@ -27,7 +27,7 @@ pub mod cli;
 pub mod golden;
 pub mod link;
 
-pub use rasterlab_bench::{baselines, stress, trade};
+pub use rasterlab_bench::{baselines, extremes, trade};
 pub use rasterlab_evaluator as evaluator;
 pub use rasterlab_files::{archive, effect_files, film, host, preset_file};
 pub use rasterlab_gpu as gpu;

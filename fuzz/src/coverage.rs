@@ -5,12 +5,7 @@
 use std::sync::OnceLock;
 
 use libfuzzer_sys::{fuzz_mutator, fuzz_target, fuzzer_mutate};
-use rasterlab_fuzz::{
-    TARGETS, Target,
-    guard::Counting,
-    mutate::{Random, mutated},
-    run,
-};
+use rasterlab_fuzz::{TARGETS, Target, guard::Counting, run};
 
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
@@ -40,14 +35,22 @@ fuzz_target!(|input: &[u8]| {
     }
 });
 
-// One half of the mutations are libFuzzer's own, the others know what is packed inside.
+// Of an input that has something packed inside, one half of the mutations are made there.
 fuzz_mutator!(|data: &mut [u8], size: usize, max_size: usize, seed: u32| {
-    let mut random = Random::new(u64::from(seed));
-    if random.below(2) == 0 {
-        return fuzzer_mutate(data, size, max_size);
+    let views = target().views;
+    let view = views.get(seed as usize / 2 % views.len().max(1));
+    let inside = view.and_then(|view| Some((view, (view.open)(&data[..size])?)));
+    match inside.filter(|_| seed % 2 == 0) {
+        Some((view, mut inside)) => {
+            let length = inside.len();
+            inside.resize(length.max(1) * 2, 0);
+            let (most, length) = (inside.len(), length.max(1));
+            let length = fuzzer_mutate(&mut inside, length, most);
+            let changed = (view.close)(&data[..size], &inside[..length]);
+            let length = changed.len().min(max_size);
+            data[..length].copy_from_slice(&changed[..length]);
+            length
+        }
+        None => fuzzer_mutate(data, size, max_size),
     }
-    let changed = mutated(target(), &data[..size], &[], &mut random);
-    let length = changed.len().min(max_size);
-    data[..length].copy_from_slice(&changed[..length]);
-    length
 });

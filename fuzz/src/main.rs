@@ -1,238 +1,205 @@
-//! Replays the corpus of each target and mutates it at random for some seconds: `rasterlab-fuzz
-//! [--seconds S] [--seed N] [TARGET or FILE]...`. A file is given to the target that its folder
-//! names.
+//! What developers run beyond the tests, on this machine or, as one file, on another with a GPU.
 
-use std::{
-    fs,
-    path::{Path, PathBuf},
-    process::ExitCode,
-    sync::{Arc, Mutex, PoisonError},
-    thread,
-    time::{Duration, Instant},
+use std::{fs, path::Path, path::PathBuf, process::ExitCode, sync::Arc, thread};
+
+use clap::{Args, Parser, Subcommand};
+use pollster::FutureExt as _;
+use rasterlab::{
+    gpu::{Gpu, Renderer, device::AdapterChoice},
+    host,
 };
-
-use clap::Parser;
 use rasterlab_fuzz::{
     TARGETS, Target, corpus,
     guard::Counting,
-    mutate::{Random, mutated},
-    run::check,
+    presets, run,
+    stress::{self, Outcome},
 };
 
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
-/// Looks for input that a target does not handle as promised.
+/// Hostile input, random presets and cases that need code, against what was promised
 #[derive(Parser)]
-struct Args {
-    /// Names of targets, or files whose folder is named after one; without any, every target
-    inputs: Vec<String>,
-    /// How long each target is given mutated input; with 0 it says what became of each file of its
-    /// corpus
-    #[arg(long, default_value_t = 10.0)]
-    seconds: f64,
-    /// The same seed tries the same input, as far as the time reaches
-    #[arg(long, default_value_t = 1)]
-    seed: u64,
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
 }
 
-/// What mutated input came to.
-#[derive(Default)]
-struct Tried {
-    count: u64,
-    accepted: u64,
-    /// The longest time, and the most memory in bytes.
-    time: Duration,
-    bytes: usize,
+#[derive(Subcommand)]
+enum Command {
+    /// Give every file of the corpus, or these files, to its target, which the file's folder names
+    Inputs { inputs: Vec<String> },
+    /// Judge random presets with every exact option
+    Presets {
+        #[command(flatten)]
+        device: Device,
+        #[command(flatten)]
+        presets: presets::Options,
+    },
+    /// Draw and judge the cases whose names contain one of these texts, separated by commas
+    Cases {
+        #[command(flatten)]
+        device: Device,
+        filter: Option<String>,
+        /// Changes the random cases
+        #[arg(long, default_value_t = 0)]
+        seed: u32,
+        /// List the cases and draw nothing
+        #[arg(long)]
+        list: bool,
+    },
+    /// Every pair of a scene, an effect, an option and a work distribution in few pictures
+    Pairs {
+        #[command(flatten)]
+        device: Device,
+        #[arg(long, default_value_t = 0)]
+        seed: u32,
+    },
 }
 
-/// The input that is running, and since when; none between inputs.
-type Running = Arc<Mutex<Option<(&'static Target, Vec<u8>, Instant)>>>;
+#[derive(Args)]
+struct Device {
+    /// A part of the adapter's name
+    #[arg(long)]
+    adapter: Option<String>,
+    /// Folder of shaders instead of those in the program
+    #[arg(long)]
+    shaders: Option<PathBuf>,
+}
+
+impl Device {
+    fn open(self) -> Result<Renderer, String> {
+        host::shaders::choose(self.shaders);
+        let choice = self
+            .adapter
+            .map_or(AdapterChoice::Any, AdapterChoice::Named);
+        let gpu = Gpu::open(&choice)
+            .block_on()
+            .map_err(|error| error.to_string())?;
+        eprintln!("adapter: {} ({})", gpu.summary.name, gpu.summary.driver);
+        Ok(Renderer::new(gpu))
+    }
+}
 
 fn main() -> ExitCode {
-    let args = Args::parse();
-    let running = Running::default();
-    watch(running.clone());
-    // The sentence of a panic is printed with its input.
-    if args.inputs.iter().all(|input| !Path::new(input).is_file()) {
+    let faults = match Cli::parse().command {
+        Command::Inputs { inputs } => replay(&inputs),
+        Command::Presets { device, presets } => device
+            .open()
+            .and_then(|renderer| presets::run(renderer, &presets)),
+        Command::Cases {
+            list: true, filter, ..
+        } => {
+            for case in stress::chosen(filter.as_deref()) {
+                println!("{:32} {}", case.name, case.about);
+            }
+            Ok(0)
+        }
+        Command::Cases {
+            device,
+            filter,
+            seed,
+            ..
+        } => device
+            .open()
+            .and_then(|renderer| run_cases(renderer, filter.as_deref(), seed)),
+        Command::Pairs { device, seed } => device
+            .open()
+            .and_then(|renderer| run_cases(renderer, Some("every-pair"), seed)),
+    };
+    match faults {
+        Ok(0) => ExitCode::SUCCESS,
+        Ok(_) => ExitCode::FAILURE,
+        Err(sentence) => {
+            eprintln!("error: {sentence}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+/// The number of cases that failed.
+fn run_cases(mut renderer: Renderer, filter: Option<&str>, seed: u32) -> Result<usize, String> {
+    let cases = stress::chosen(filter);
+    if cases.is_empty() {
+        return Err("no case has such a name; rasterlab-fuzz cases --list shows all".into());
+    }
+    let mut failed = 0;
+    for case in cases {
+        let gpu = renderer.gpu().clone();
+        let report = case.run(&mut renderer, seed, &|_| true);
+        let seconds = report.ms / 1e3;
+        println!(
+            "{:32} {:20} {:6} pictures {seconds:8.1} s",
+            report.name,
+            report.outcome.word(),
+            report.counts.pictures
+        );
+        for note in &report.notes {
+            println!("  {note}");
+        }
+        if let Outcome::Failed(why) = &report.outcome {
+            eprintln!("case {}: {why} (seed {seed})", report.name);
+            failed += 1;
+            // A failure may leave queues and caches in a wrong state.
+            renderer = Renderer::new(gpu.clone());
+        }
+        if gpu.is_lost() && report.outcome.is_failure() {
+            return Err("the device was lost".into());
+        }
+    }
+    Ok(failed)
+}
+
+/// The number of inputs that are not handled as promised.
+fn replay(inputs: &[String]) -> Result<usize, String> {
+    let mut files: Vec<(&Target, String, Vec<u8>)> = Vec::new();
+    for input in inputs {
+        let folder = Path::new(input).parent().and_then(Path::file_name);
+        let target = TARGETS
+            .iter()
+            .find(|target| folder.is_some_and(|folder| folder == target.name))
+            .ok_or_else(|| format!("{input}: its folder has not the name of a target"))?;
+        let bytes = fs::read(input).map_err(|error| format!("{input}: {error}"))?;
+        files.push((target, input.clone(), bytes));
+    }
+    if inputs.is_empty() {
+        for target in &TARGETS {
+            let of_target = corpus::read(target)
+                .map_err(|error| format!("{}: {error}", corpus::folder(target).display()))?;
+            if of_target.is_empty() {
+                return Err(format!("{} is empty", corpus::folder(target).display()));
+            }
+            files.extend(
+                of_target
+                    .into_iter()
+                    .map(|(name, bytes)| (target, name, bytes)),
+            );
+        }
+        // The sentence of a panic is printed with its input.
         std::panic::set_hook(Box::new(|_| {}));
     }
     let mut faults = 0;
-    let chosen = |input: &str| TARGETS.iter().find(|target| target.name == input);
-    for input in &args.inputs {
-        let folder = Path::new(input)
-            .parent()
-            .and_then(Path::file_name)
-            .map(|name| name.to_string_lossy().into_owned())
-            .unwrap_or_default();
-        match (chosen(input), chosen(&folder), fs::read(input)) {
-            (Some(target), ..) => faults += fuzz(target, &args, &running),
-            (None, Some(target), Ok(bytes)) => {
-                faults += u32::from(!try_input(target, input, &bytes, &running, None, true))
-            }
-            (None, _, Err(error)) => {
-                return usage(&format!("{input} is no target, and as a file: {error}"));
-            }
-            (None, None, Ok(_)) => {
-                return usage(&format!("{input}: its folder has not the name of a target"));
-            }
-        }
-    }
-    if args.inputs.is_empty() {
-        faults = TARGETS
-            .iter()
-            .map(|target| fuzz(target, &args, &running))
-            .sum();
-    }
-    match faults {
-        0 => ExitCode::SUCCESS,
-        _ => {
-            eprintln!(
-                "{faults} faults; their input is in {}",
-                corpus::found().display()
-            );
-            ExitCode::FAILURE
-        }
-    }
-}
-
-fn usage(sentence: &str) -> ExitCode {
-    eprintln!("{sentence}; the targets:");
-    TARGETS
-        .iter()
-        .for_each(|target| eprintln!("  {:14} {}", target.name, target.about));
-    ExitCode::from(2)
-}
-
-/// Faults of a target, at most eight.
-fn fuzz(target: &'static Target, args: &Args, running: &Running) -> u32 {
-    let files = match corpus::read(target) {
-        Ok(files) if !files.is_empty() => files,
-        Ok(_) => panic!("{} is empty", corpus::folder(target).display()),
-        Err(error) => panic!("{}: {error}", corpus::folder(target).display()),
-    };
-    let mut faults: u32 = files
-        .iter()
-        .map(|(name, bytes)| {
-            u32::from(!try_input(
-                target,
-                name,
-                bytes,
-                running,
-                None,
-                args.seconds == 0.0,
-            ))
-        })
-        .sum();
-    let (mut random, start) = (Random::new(args.seed), Instant::now());
-    let mut tried = Tried::default();
-    while start.elapsed().as_secs_f64() < args.seconds && faults < 8 {
-        let [one, other] = [(); 2].map(|()| &files[random.below(files.len())].1);
-        let mut input = mutated(target, one, other, &mut random);
-        // Some mutations show only together.
-        for _ in 0..random.below(3) * random.below(2) {
-            input = mutated(target, &input, other, &mut random);
-        }
-        faults += u32::from(!try_input(
-            target,
-            "mutated input",
-            &input,
-            running,
-            Some(&mut tried),
-            false,
-        ));
-    }
-    let Tried {
-        count,
-        accepted,
-        time,
-        bytes,
-    } = tried;
-    println!(
-        "{:13} {} files, {count} mutated inputs in {:.0} s, {accepted} accepted; at most {:.2} s and {} MiB each; {faults} faults",
-        target.name,
-        files.len(),
-        start.elapsed().as_secs_f64(),
-        time.as_secs_f64(),
-        bytes >> 20
-    );
-    faults
-}
-
-/// Does the target handle the input as promised? Otherwise the input is kept in a file.
-fn try_input(
-    target: &'static Target,
-    name: &str,
-    input: &[u8],
-    running: &Running,
-    tried: Option<&mut Tried>,
-    is_told: bool,
-) -> bool {
-    *running.lock().unwrap_or_else(PoisonError::into_inner) =
-        Some((target, input.to_vec(), Instant::now()));
-    let outcome = check(target, input);
-    *running.lock().unwrap_or_else(PoisonError::into_inner) = None;
-    match (outcome, tried) {
-        (Ok(cost), Some(tried)) => {
-            tried.count += 1;
-            tried.accepted += u64::from(cost.outcome.is_ok());
-            (tried.time, tried.bytes) = (tried.time.max(cost.time), tried.bytes.max(cost.bytes));
-        }
-        (Ok(cost), None) if is_told => {
-            println!(
-                "{}: {name}: {}",
-                target.name,
-                cost.outcome
-                    .err()
-                    .map_or("accepted".into(), |refusal| format!("refused: {refusal}"))
-            )
-        }
-        (Ok(_), None) => {}
-        (Err(sentence), _) => {
-            eprintln!(
-                "{}: {name}: {sentence}\n  the input: {}",
-                target.name,
-                kept(target, input).display()
-            );
-            return false;
-        }
-    }
-    true
-}
-
-/// Writes the input to a file named after its bytes.
-fn kept(target: &Target, input: &[u8]) -> PathBuf {
-    let name = input.iter().fold(0xcbf2_9ce4_8422_2325u64, |hash, byte| {
-        (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3)
-    });
-    let folder = corpus::found().join(target.name);
-    let path = folder.join(format!("{name:016x}"));
-    fs::create_dir_all(&folder)
-        .and_then(|()| fs::write(&path, input))
-        .expect("the folder can be written");
-    path
-}
-
-/// Ends the process where an input takes five times as long as allowed: it may never end.
-fn watch(running: Running) {
-    thread::spawn(move || {
-        loop {
-            thread::sleep(Duration::from_millis(500));
-            let now = running
-                .lock()
-                .unwrap_or_else(PoisonError::into_inner)
-                .clone();
-            if let Some((target, input, since)) = now
-                && since.elapsed() > 5 * target.limit.time
-            {
-                eprintln!(
-                    "{}: no end after {:.0} s\n  the input: {}",
-                    target.name,
-                    since.elapsed().as_secs_f64(),
-                    kept(target, &input).display()
-                );
+    for (target, name, bytes) in &files {
+        // An input that takes five times as long as allowed may never end.
+        let (is_done, what) = (Arc::new(()), format!("{}: {name}", target.name));
+        let (watched, limit) = (Arc::downgrade(&is_done), 5 * target.limit.time);
+        thread::spawn(move || {
+            thread::sleep(limit);
+            if watched.upgrade().is_some() {
+                eprintln!("{what}: no end after {:.0} s", limit.as_secs_f64());
                 std::process::exit(1);
             }
+        });
+        match run::check(target, bytes) {
+            Ok(cost) if !inputs.is_empty() => println!("{name}: {:?}", cost.outcome),
+            Ok(_) => {}
+            Err(sentence) => {
+                eprintln!("{}: {name}: {sentence}", target.name);
+                faults += 1;
+            }
         }
-    });
+        drop(is_done);
+    }
+    println!("{} files, {faults} faults", files.len());
+    Ok(faults)
 }

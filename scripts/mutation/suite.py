@@ -4,21 +4,25 @@ import glob
 import os
 
 # Steps in the order in which a mutant meets them: the gallery, small; presets with options and scenes that the gallery lacks, in
-# scripts/mutation/presets; extreme cases; random presets; effects of files.
-STEPS = ["verify", "options", "stress", "fuzz", "examples"]
+# scripts/mutation/presets; extreme cases; cases that need code and random presets, of the developers' program; effects of files.
+STEPS = ["verify", "options", "stress", "cases", "fuzz", "examples"]
+
+# The developers' program, beside the program, and its steps.
+DEVELOPERS = "rasterlab-fuzz"
+DEVELOPERS_STEPS = ["cases", "fuzz"]
 
 SMALL = ["--size", "96x72", "--frames", "2"]
 # The oracle evaluates the text of effects of files, which takes longer.
 SMALLER = ["--size", "48x36"]
 
-# Cases of `stress` that take little time; a name stands for all cases whose names contain it.
-STRESS = [
-    "clipped-quads", "beyond-the-guard-band", "rotated-quads", "fan-around-a-sample", "d3d", "translation", "sizes", "slivers",
-    "size-class-borders", "guard-band", "clipped-needles", "w-around-zero", "non-finite", "depth-range", "relative-positions", "coplanar-layers", "near-ties",
-    "degenerate-triangles", "queues", "empty-pictures", "odd-picture-sizes", "mirrored-transforms", "draw-limit", "unusual-skins",
-    "rotations-of-any-length", "after-a-day", "shuffled-triangles", "near-plane-sweep", "culled-walk", "culled-cameras", "culled-behind-holes", "edges-beside-axes",
-    "clipped-in-turns", "played-particles", "normals-along-axes",
-    "skins-beside-other-meshes",
+# Extreme cases that take long.
+SLOW_STRESS = ["million-triangles", "many-layers-of-xray", "layers-of-glass", "too-many-layers-of-glass"]
+
+# Cases that need code and take little time; a name stands for all cases whose names contain it.
+CASES = [
+    "d3d-snap", "translation", "guard-band", "non-finite", "relative-positions", "coplanar-layers", "near-ties", "degenerate-triangles", "queues",
+    "empty-pictures", "mirrored-transforms", "draw-limit", "unusual-skins", "rotations-of-any-length", "after-a-day", "shuffled-triangles",
+    "near-plane-sweep", "culled-walk", "culled-cameras", "culled-behind-holes", "clipped-in-turns", "played-particles", "skins-beside-other-meshes",
 ]  # fmt: skip
 
 # Examples that take the oracle half a minute of a CPU, and whose library files others read too.
@@ -28,7 +32,7 @@ SLOW_EXAMPLES = ["strata"]
 FUZZ_PART = 10
 
 # Notes that tell of a failure while the program goes on, for instance to shrink a preset that failed.
-FAILED_NOTE = {"fuzz": r"^seed \d+ failed: ", "stress": r"^case \d+, [\w-]+: "}
+FAILED_NOTE = {"fuzz": r"^seed \d+ failed: ", "stress": r"^case [\w-]+: ", "cases": r"^case [\w-]+: "}
 
 
 class Probe:
@@ -46,11 +50,13 @@ class Probe:
         return " ".join(self.words)
 
     def command(self, program, shaders):
+        if self.step in DEVELOPERS_STEPS:
+            return [os.path.join(os.path.dirname(program), DEVELOPERS), self.words[0], "--shaders", shaders, *self.words[1:]]
         return [program, "--shaders", shaders, *self.words]
 
 
-def probes(root, fuzz_count, fuzz_seed, leave_out=(), joins_stress=True, cases=()):
-    """All probes, in the order of their steps. `joins_stress`: the program takes several cases at once. `cases`: more cases of `stress`."""
+def probes(root, fuzz_count, fuzz_seed, leave_out=(), cases=()):
+    """All probes, in the order of their steps. `cases`: more cases, which may be slow."""
 
     def presets(step, head, folder, but=()):
         paths = sorted(glob.glob(os.path.join(root, folder, "*.toml")))
@@ -59,11 +65,14 @@ def probes(root, fuzz_count, fuzz_seed, leave_out=(), joins_stress=True, cases=(
 
     found = presets("verify", ["verify", *SMALL], "presets")
     found += presets("options", ["verify", "--frames", "2"], os.path.join("scripts", "mutation", "presets"))
-    for name in STRESS + [case for case in cases if case not in STRESS]:
-        found.append(Probe("stress", ["stress", "--filter"], [name], ",") if joins_stress else Probe("stress", ["stress", "--filter", name], []))
+    extremes = [os.path.basename(path)[: -len(".toml")] for path in sorted(glob.glob(os.path.join(root, "presets", "extremes", "*.toml")))]
+    quick = [name for name in extremes if name not in SLOW_STRESS or name in cases]
+    found += [Probe("stress", ["stress", "--filter"], [name], ",") for name in quick]
+    others = [case for case in cases if case not in CASES and case not in quick]
+    found += [Probe("cases", ["cases"], [name], ",") for name in CASES + others]
     for begin in range(0, fuzz_count, FUZZ_PART):
         part = min(FUZZ_PART, fuzz_count - begin)
-        found.append(Probe("fuzz", ["fuzz", "--seed", str(fuzz_seed + begin), "--count", str(part)], []))
+        found.append(Probe("fuzz", ["presets", "--seed", str(fuzz_seed + begin), "--count", str(part)], []))
     found += presets("examples", ["verify", *SMALLER], "examples", SLOW_EXAMPLES)
     return [probe for probe in found if probe.step not in leave_out]
 

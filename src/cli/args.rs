@@ -195,8 +195,6 @@ pub enum Command {
     Bench(Bench),
     /// Run the extreme cases, each with its expected outcome
     Stress(Stress),
-    /// Verify random presets; each that fails is shrunk to the smallest preset that still does
-    Fuzz(Fuzz),
     /// Print the gallery of the README, every effect with its pictures, as Markdown
     Gallery(Gallery),
     /// Validate presets; with --render also compare them with their goldens
@@ -249,7 +247,6 @@ impl Command {
             Self::Bless(_) => "bless",
             Self::Bench(_) => "bench",
             Self::Stress(_) => "stress",
-            Self::Fuzz(_) => "fuzz",
             Self::Gallery(_) => "gallery",
             Self::Check(_) => "check",
             Self::Review(_) => "review",
@@ -552,34 +549,12 @@ pub struct Bench {
 
 #[derive(Args, Debug)]
 pub struct Stress {
-    /// Run only the case of this number, or the cases whose names contain this text; several are
-    /// separated by commas
+    /// Run only the cases whose names contain this text; several are separated by commas
     #[arg(long, value_name = "F")]
     pub filter: Option<String>,
-    /// Changes the random cases
-    #[arg(long, value_name = "N", default_value_t = 0)]
-    pub seed: u32,
     /// List the cases and draw nothing
     #[arg(long)]
     pub list: bool,
-}
-
-#[derive(Args, Debug)]
-pub struct Fuzz {
-    /// Seed of the first preset; each of the others has the next seed
-    #[arg(long, value_name = "N", default_value_t = 0)]
-    pub seed: u32,
-    /// Number of presets
-    #[arg(long, value_name = "M", default_value_t = 100)]
-    pub count: u32,
-    /// Effects that every preset has, separated by commas, instead of those that cannot be beside
-    /// them
-    #[arg(long, value_name = "EFFECTS", value_delimiter = ',')]
-    pub with: Vec<String>,
-    /// Folder for the presets that failed, shrunk, and as they are for those that took long or
-    /// lost the device
-    #[arg(short, long, value_name = "DIR")]
-    pub output: Option<PathBuf>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

@@ -16,7 +16,6 @@ mod error;
 mod explain;
 mod files;
 mod finding;
-mod fuzz;
 pub mod gallery;
 mod link;
 mod list;
@@ -131,7 +130,6 @@ fn dispatch(common: &Common, command: &Command, streams: &mut Streams) -> Result
         Command::Bench(args) => bench::run(common, args, streams),
         Command::Sweep(args) => sweep::run(common, args, streams),
         Command::Stress(args) => stress::run(common, args, streams),
-        Command::Fuzz(args) => fuzz::run(common, args, streams),
         Command::Gallery(args) => gallery::run(args, streams),
         Command::Check(args) => check::run(common, args, streams),
         Command::Review(args) => review::run(common, args, streams),

@@ -174,14 +174,35 @@ pub fn presets(
         }
         (names, _) => names
             .iter()
-            .map(|name| open(common, name))
-            .collect::<Result<_, _>>()?,
+            .map(|name| presets_at(common, name))
+            .collect::<Result<Vec<_>, _>>()?
+            .concat(),
     };
     preset_files
         .iter()
         .flat_map(PresetFile::remarks)
         .for_each(|remark| streams.note(&remark));
     Ok(preset_files)
+}
+
+/// What a person names: a preset, or a folder and every preset in it.
+fn presets_at(common: &Common, name: &str) -> Result<Vec<PresetFile>, CliError> {
+    let error = match open(common, name) {
+        Ok(preset_file) => return Ok(vec![preset_file]),
+        Err(error) => error,
+    };
+    let Ok(entries) = std::fs::read_dir(name) else {
+        return Err(error);
+    };
+    let mut paths: Vec<_> = entries
+        .filter_map(|entry| Some(entry.ok()?.path()))
+        .filter(|path| path.extension().is_some_and(|end| end == "toml"))
+        .collect();
+    paths.sort();
+    let preset_files = paths
+        .iter()
+        .map(|path| open(common, &path.to_string_lossy()));
+    preset_files.collect()
 }
 
 /// What a JSON object says of a preset: its id, and where a look has landed, the look and the

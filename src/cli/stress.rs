@@ -1,4 +1,4 @@
-//! `stress`: runs the extreme cases on the adapter, each with its expected outcome.
+//! `stress`: runs the extreme cases on the adapter, each with what must hold.
 
 use serde_json::{Value, json};
 
@@ -9,33 +9,28 @@ use super::{
     streams::{Columns, Streams, table},
 };
 use crate::{
+    extremes::{Cases, Outcome, Report, names},
     gpu::Renderer,
-    stress::{Case, Outcome, Report, chosen},
 };
 
 pub fn run(common: &Common, args: &Stress, streams: &mut Streams) -> Result<Exit, CliError> {
-    let cases = chosen(args.filter.as_deref());
-    if cases.is_empty() {
+    let names = names(args.filter.as_deref());
+    if names.is_empty() {
         let filter = args.filter.as_deref().unwrap_or_default();
         return Err(CliError::usage(format!(
-            "no case has the number or name {filter:?}; rasterlab stress --list shows all"
+            "no case has a name with {filter:?}; rasterlab stress --list shows all"
         )));
     }
+    let cases =
+        Cases::unpack().map_err(|e| CliError::from(e).during("the cases cannot be written"))?;
     if args.list {
-        let mut rows = vec![
-            ["CASE", "NAME", "EXPECTED", "WHAT"]
-                .map(str::to_owned)
-                .to_vec(),
-        ];
-        rows.extend(cases.iter().map(|case| {
-            vec![
-                case.number.to_string(),
-                case.name.into(),
-                case.expectation.to_string(),
-                case.about.into(),
-            ]
-        }));
-        streams.text(&table(&rows))?;
+        let head = ["NAME", "WHAT"].map(str::to_owned).to_vec();
+        let rows = names
+            .iter()
+            .map(|name| vec![(*name).to_owned(), cases.about(name)]);
+        streams.text(&table(
+            &std::iter::once(head).chain(rows).collect::<Vec<_>>(),
+        ))?;
         return Ok(Exit::Done);
     }
     let mut backend = Backend::open(common, streams)?;
@@ -44,15 +39,15 @@ pub fn run(common: &Common, args: &Stress, streams: &mut Streams) -> Result<Exit
             "stress needs a GPU adapter; the oracle is the reference",
         ));
     };
-    let bar = streams.progress(cases.len() as u64);
-    let columns = columns(&cases);
+    let bar = streams.progress(names.len() as u64);
+    let columns = columns(&names);
     if !streams.json {
         streams.text_now(&columns.line(&HEAD.map(str::to_owned)))?;
     }
     let mut reports = Vec::new();
-    for case in &cases {
-        let report = case.run(renderer, args.seed, &|what| {
-            bar.set_message(format!("{}: {what}", case.name));
+    for name in names {
+        let report = cases.run(name, renderer, &|what| {
+            bar.set_message(format!("{name}: {what}"));
             true
         });
         bar.inc(1);
@@ -67,7 +62,7 @@ pub fn run(common: &Common, args: &Stress, streams: &mut Streams) -> Result<Exit
             bar.suspend(|| streams.note(&line(&report)));
         }
         if !streams.json {
-            // Some cases take minutes, so each row is printed at once.
+            // Some cases take long, so each row is printed at once.
             bar.suspend(|| streams.text_now(&columns.line(&row(&report))))?;
         }
         reports.push(report);
@@ -78,15 +73,15 @@ pub fn run(common: &Common, args: &Stress, streams: &mut Streams) -> Result<Exit
         .filter(|report| report.outcome.is_failure())
         .count();
     if streams.json {
-        streams.object(
-            "stress",
-            backend.json(),
-            reports.iter().map(result).collect(),
-        )?;
+        let results = reports.iter().map(result).collect();
+        streams.object("stress", backend.json(), results)?;
     } else {
-        remarks(&reports)
+        let refused = reports
             .iter()
-            .try_for_each(|remark| streams.text(&format!("{remark}\n")))?;
+            .filter(|report| matches!(report.outcome, Outcome::Refused(_)));
+        for report in refused {
+            streams.text(&format!("{}\n", line(report)))?;
+        }
     }
     let seconds = reports.iter().map(|report| report.ms).sum::<f64>() / 1e3;
     let cases = if reports.len() == 1 { "case" } else { "cases" };
@@ -97,98 +92,43 @@ pub fn run(common: &Common, args: &Stress, streams: &mut Streams) -> Result<Exit
     Ok(Exit::failed_if(failed > 0))
 }
 
-/// A failure in one line, with the command that repeats it.
+/// What came of a case, in one line.
 fn line(report: &Report) -> String {
-    let Report {
-        number,
-        name,
-        outcome,
-        seed,
-        ..
-    } = report;
-    let seed = seed
-        .map(|seed| format!(" (repeat with: rasterlab stress --filter {name} --seed {seed})"))
-        .unwrap_or_default();
+    let Report { name, outcome, .. } = report;
     format!(
-        "case {number}, {name}: {}{seed}",
-        outcome.why().unwrap_or(outcome.word())
+        "case {name}: {}: {}",
+        outcome.word(),
+        outcome.why().unwrap_or_default()
     )
 }
 
-const HEAD: [&str; 7] = [
-    "CASE",
-    "NAME",
-    "EXPECTED",
-    "OUTCOME",
-    "PICTURES",
-    "TRIANGLES",
-    "MS",
-];
+const HEAD: [&str; 5] = ["NAME", "OUTCOME", "PICTURES", "TRIANGLES", "MS"];
 
 /// Columns that are wide enough for every row.
-fn columns(cases: &[&Case]) -> Columns {
-    let most = |digits: usize| "0".repeat(digits);
-    let outcome = Outcome::Refused(String::new()).word().to_owned();
-    let widest = |case: &&Case| {
-        vec![
-            case.number.to_string(),
-            case.name.into(),
-            case.expectation.to_string(),
-            outcome.clone(),
-            most(8),
-            most(11),
-            most(7),
-        ]
-    };
+fn columns(names: &[&str]) -> Columns {
+    let outcome = Outcome::Refused(String::new()).word();
+    let widest = |name| [name, outcome, "00000000", "00000000000", "0000000"];
+    let rows = std::iter::once(HEAD).chain(names.iter().copied().map(widest));
     Columns::of(
-        &std::iter::once(HEAD.map(str::to_owned).to_vec())
-            .chain(cases.iter().map(widest))
+        &rows
+            .map(|row| row.map(str::to_owned).to_vec())
             .collect::<Vec<_>>(),
     )
 }
 
 fn row(report: &Report) -> Vec<String> {
     vec![
-        report.number.to_string(),
         report.name.into(),
-        report.expectation.to_string(),
         report.outcome.word().into(),
-        report.counts.pictures.to_string(),
-        report.counts.triangles.to_string(),
+        report.pictures.to_string(),
+        report.triangles.to_string(),
         format!("{:.0}", report.ms),
     ]
 }
 
-/// Details that are not in the table: failures first, then cases that were left out or refused, and
-/// notes.
-fn remarks(reports: &[Report]) -> Vec<String> {
-    let (failed, others): (Vec<_>, Vec<_>) = reports
-        .iter()
-        .partition(|report| report.outcome.is_failure());
-    let of = |report: &&Report| {
-        let why = match &report.outcome {
-            Outcome::Failed(_) => Some(format!("FAILED {}", line(report))),
-            Outcome::Skipped(why) => {
-                Some(format!("{} {}: skipped: {why}", report.number, report.name))
-            }
-            Outcome::Refused(why) => {
-                Some(format!("{} {}: refused: {why}", report.number, report.name))
-            }
-            Outcome::Passed | Outcome::Stopped => None,
-        };
-        let notes = report
-            .notes
-            .iter()
-            .map(|note| format!("{} {}: {note}", report.number, report.name));
-        why.into_iter().chain(notes).collect::<Vec<_>>()
-    };
-    failed.iter().chain(&others).flat_map(of).collect()
-}
-
 fn result(report: &Report) -> Value {
     json!({
-        "number": report.number, "name": report.name, "about": report.about, "expectation": report.expectation.to_string(),
-        "outcome": report.outcome.word().to_lowercase(), "why": report.outcome.why(), "notes": report.notes, "seed": report.seed,
-        "ms": report.ms, "pictures": report.counts.pictures, "pixels": report.counts.pixels, "triangles": report.counts.triangles,
+        "name": report.name, "about": report.about, "outcome": report.outcome.word().to_lowercase(), "why": report.outcome.why(),
+        "ms": report.ms, "pictures": report.pictures, "triangles": report.triangles,
     })
 }

@@ -79,9 +79,20 @@ pub fn run(common: &Common, args: &Verify, streams: &mut Streams) -> Result<Exit
     let mut rows = Vec::new();
     for preset_file in &preset_files {
         bar.set_message(preset_file.id.clone());
-        let scene = scene_of(common, preset_file, streams)?;
-        let verified = check(common, &options, preset_file, &scene, &mut backend);
-        rows.extend(verified.map_err(|error| error.during(format!("preset {}", preset_file.id)))?);
+        let verified = scene_of(common, preset_file, streams)
+            .and_then(|scene| check(common, &options, preset_file, &scene, &mut backend));
+        match (verified, &preset_file.preset.test) {
+            (Err(error), Some(test)) if test.expects_refusal(&error.sentence()) => {
+                streams.note(&format!(
+                    "{}: refused as its test asks: {}",
+                    preset_file.id,
+                    error.sentence()
+                ));
+            }
+            (verified, _) => rows.extend(
+                verified.map_err(|error| error.during(format!("preset {}", preset_file.id)))?,
+            ),
+        }
         bar.inc(1);
     }
     bar.finish_and_clear();
@@ -206,6 +217,13 @@ pub fn check(
             options.allows_any_band,
         );
         failures.extend(scaling_failure(&capture));
+        failures.extend(budget.count_faults(&capture.frame, capture.layers.as_deref()));
+        if !budget.refused.is_empty() {
+            failures.push(format!(
+                "it was drawn but must be refused: {}",
+                budget.refused
+            ));
+        }
         let is_repeatable = preset.stack.is_repeatable() && !preset.accuracy.is_left_to_chance();
         for repeat in 1..=options.repeats {
             if is_repeatable && backend.capture(&pinned, scene)?.frame != capture.frame {

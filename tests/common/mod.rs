@@ -14,17 +14,6 @@ use std::{
 mod shader_parts;
 
 use pollster::FutureExt as _;
-pub use rasterlab::stress::{
-    adversarial::near_miss_triangle,
-    exactness,
-    matrix::{DEFORMED_SCENES, GALLERY_SCENES, SCENES},
-    pinned,
-    scenes::{
-        Rng, SimpleMesh, camera_view, pixel_view, scene_of_meshes, triangle_soup,
-        triangle_soup_in_units,
-    },
-    stack, tunings,
-};
 use rasterlab::{
     accuracy::{AxisOption, PinnedOptions, Visibility},
     effects::Stack,
@@ -37,7 +26,18 @@ use rasterlab::{
     preset::Preset,
     scene::{Scene, builtin, view::View},
     shader::library::Library,
-    stress,
+};
+use rasterlab_fuzz::stress;
+pub use rasterlab_fuzz::stress::{
+    adversarial::near_miss_triangle,
+    exactness,
+    matrix::{DEFORMED_SCENES, GALLERY_SCENES, SCENES},
+    pinned,
+    scenes::{
+        Rng, SimpleMesh, camera_view, pixel_view, scene_of_meshes, triangle_soup,
+        triangle_soup_in_units,
+    },
+    stack, tunings,
 };
 
 /// The adapter under test: `RASTERLAB_ADAPTER` (a part of its name) or the best there is. A missing

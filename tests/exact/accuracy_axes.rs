@@ -407,7 +407,7 @@ fn neighbors_in_boxes_of_their_own_crack_when_they_are_packed() {
             ]
             .map(|[x, y]| [x, y, 0.5])
         };
-        rasterlab::stress::scenes::triangle_soup((0..136).flat_map(quad))
+        rasterlab_fuzz::stress::scenes::triangle_soup((0..136).flat_map(quad))
     };
     let scene = scene_of_meshes(&[sheet(-1000.0), sheet(300.0)]);
     let view = pixel_view(256, 256);
@@ -451,7 +451,7 @@ fn modelled_far_away(offset: f64, size: [u32; 2]) -> (std::sync::Arc<Scene>, Vie
             .as_vec3()
             .to_array()
     };
-    let part = rasterlab::stress::scenes::SimpleMesh {
+    let part = rasterlab_fuzz::stress::scenes::SimpleMesh {
         positions: (0..mesh.vertex_count()).map(place).collect(),
         indices: (0..mesh.triangle_count())
             .flat_map(|triangle| mesh.corners(&knot, triangle))
@@ -464,7 +464,7 @@ fn modelled_far_away(offset: f64, size: [u32; 2]) -> (std::sync::Arc<Scene>, Vie
         target: at,
         ..Camera::default()
     };
-    let view = rasterlab::stress::scenes::camera_view(&scene, &camera, size);
+    let view = rasterlab_fuzz::stress::scenes::camera_view(&scene, &camera, size);
     (scene, view)
 }
 
@@ -650,7 +650,7 @@ fn packed_positions_refuse_what_stored_ones_refuse_and_deformed_meshes() {
         corners[corner][corner] = value;
         positions.extend(corners);
     }
-    let scene = scene_of_meshes(&[rasterlab::stress::scenes::triangle_soup(positions)]);
+    let scene = scene_of_meshes(&[rasterlab_fuzz::stress::scenes::triangle_soup(positions)]);
     for option in [PositionFormat::Packed10, PositionFormat::Packed16] {
         let (capture, verdict) =
             renderer.judged(&scene, &pixel_view(64, 64), &stack(&[]), &pin(option));

@@ -12,8 +12,8 @@ use rasterlab::{
     plan::{AccuracyRequest, Tier, Tuning},
     preset::{Clock, Output, Preset},
     scene::{Background, view::View},
-    stress::culling::walk,
 };
+use rasterlab_fuzz::stress::culling::walk;
 
 use crate::common::*;
 

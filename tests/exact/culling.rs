@@ -17,8 +17,8 @@ use rasterlab::{
         camera::{Camera, Projection},
         view::View,
     },
-    stress::culling::walk,
 };
+use rasterlab_fuzz::stress::culling::walk;
 
 use crate::common::*;
 

@@ -1,13 +1,16 @@
-//! Promise: every extreme case of the table meets its expectation, and the judge of every kind of
-//! case can fail. Needs an adapter. `RASTERLAB_SEED=n` changes the random cases; a failure names
-//! the case and the seed that draw it again.
+//! Promise: every preset of `presets/extremes` is exact with every option and work distribution,
+//! the cases that need code meet their expectations, and the judge of both can fail. Needs an
+//! adapter. `RASTERLAB_SEED=n` changes the random cases; a failure names the case and the seed that
+//! draw it again.
 
 use std::{cell::Cell, collections::BTreeSet, fs, path::Path};
 
 use rasterlab::{
+    extremes,
     gpu::Renderer,
-    stress::{self, Outcome, Report},
+    preset_file::{self, Folders},
 };
+use rasterlab_fuzz::stress::{self, Outcome, Report};
 
 use crate::common::*;
 
@@ -49,6 +52,95 @@ fn check(name: &str) {
     );
 }
 
+/// Draws every fourth preset with every option, and with every way to share out the work.
+fn check_presets(part: usize) {
+    let Some(mut renderer) = renderer() else {
+        return;
+    };
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("presets/extremes");
+    let mut faults = Vec::new();
+    for name in extremes::names(None).into_iter().skip(part).step_by(4) {
+        let path = folder.join(format!("{name}.toml"));
+        let preset_file = preset_file::open(&path.to_string_lossy(), &Folders::default())
+            .unwrap_or_else(|error| panic!("{error}"));
+        let preset = &preset_file.preset;
+        let test = preset.test.clone().unwrap_or_default();
+        let scene = preset_file::load_scene(preset, preset_file.path.as_deref())
+            .unwrap_or_else(|error| panic!("{name}: {error}"));
+        if !test.refused.is_empty() {
+            continue;
+        }
+        // A million triangles show no more with another tuning.
+        let tunings = match scene.triangle_count() {
+            ..100_000 => tunings().to_vec(),
+            _ => vec![renderer.gpu().caps.tuning()],
+        };
+        let mut first = None;
+        for (option, tuning) in options(&renderer)
+            .into_iter()
+            .flat_map(|option| tunings.iter().map(move |tuning| (option, *tuning)))
+        {
+            renderer.set_tuning(tuning);
+            let mut accuracy = preset.accuracy;
+            accuracy.pins = accuracy.pins.with(option);
+            let (capture, verdict) = judged_preset(&mut renderer, &scene, preset, &accuracy);
+            let over = test.pixels_over_tolerance(&verdict, &capture.frame);
+            let mut of_picture = test.faults(&verdict.report, over, false);
+            of_picture.extend(test.count_faults(&capture.frame, capture.layers.as_deref()));
+            let ids = capture.frame.triangle_id;
+            if preset.stack.is_repeatable() && *first.get_or_insert_with(|| ids.clone()) != ids {
+                of_picture.push("other triangles than in the first picture".into());
+            }
+            let what = format!("{name}, {}, {tuning:?}", option.name());
+            faults.extend(of_picture.iter().map(|fault| format!("{what}: {fault}")));
+        }
+        let default = renderer.gpu().caps.tuning();
+        renderer.set_tuning(default);
+    }
+    assert!(faults.is_empty(), "{}", faults.join("\n"));
+}
+
+#[test]
+fn presets_are_exact_1() {
+    check_presets(0);
+}
+
+#[test]
+fn presets_are_exact_2() {
+    check_presets(1);
+}
+
+#[test]
+fn presets_are_exact_3() {
+    check_presets(2);
+}
+
+#[test]
+fn presets_are_exact_4() {
+    check_presets(3);
+}
+
+#[test]
+fn every_case_of_the_program_is_what_its_test_says() {
+    let Some(mut renderer) = renderer() else {
+        return;
+    };
+    let cases = extremes::Cases::unpack().expect("a folder for temporary files");
+    for (name, is_stopped) in [
+        ("d3d-rectangle", false),
+        ("too-many-layers-of-glass", false),
+        ("sizes", true),
+    ] {
+        let outcome = cases.run(name, &mut renderer, &|_| !is_stopped).outcome;
+        match (name, outcome) {
+            ("d3d-rectangle", extremes::Outcome::Passed)
+            | ("too-many-layers-of-glass", extremes::Outcome::Refused(_))
+            | ("sizes", extremes::Outcome::Stopped) => {}
+            (_, outcome) => panic!("{name}: {outcome:?}"),
+        }
+    }
+}
+
 macro_rules! cases {
     ($($test:ident = $name:literal,)*) => {
         $(#[test]
@@ -61,27 +153,11 @@ macro_rules! cases {
 }
 
 cases! {
-    case_1_rotated_quads = "rotated-quads",
-    case_1_clipped_quads = "clipped-quads",
-    case_1_quads_beyond_the_guard_band = "quads-beyond-the-guard-band",
-    case_2_fan_around_a_sample = "fan-around-a-sample",
-    case_3_d3d_rectangle = "d3d-rectangle",
-    case_3_d3d_four_triangles = "d3d-four-triangles",
     case_3_d3d_snap = "d3d-snap",
     case_4_translation = "translation",
-    case_5_sizes = "sizes",
-    case_6_dense_grids = "dense-grids",
-    case_7_slivers = "slivers",
-    case_8_size_class_borders = "size-class-borders",
-    case_8_edges_beside_axes = "edges-beside-axes",
     case_9_guard_band = "guard-band",
-    case_9_clipped_needles = "clipped-needles",
-    case_10_w_around_zero = "w-around-zero",
     case_12_non_finite_positions = "non-finite-positions",
     case_12_non_finite_attributes = "non-finite-attributes",
-    case_12_normals_along_axes = "normals-along-axes",
-    case_13_depth_range = "depth-range",
-    case_14_scales_and_offsets = "scales-and-offsets",
     case_14_relative_positions = "relative-positions",
     case_15_coplanar_layers = "coplanar-layers",
     case_17_degenerate_triangles = "degenerate-triangles",
@@ -89,19 +165,14 @@ cases! {
     case_19_queues = "queues",
     case_19_clipped_in_turns = "clipped-in-turns",
     case_20_empty_pictures = "empty-pictures",
-    case_20_odd_picture_sizes = "odd-picture-sizes",
     case_20_picture_too_large = "picture-too-large",
-    case_21_device_lost = "device-lost",
     case_22_shuffled_triangles = "shuffled-triangles",
     case_24_mirrored_transforms = "mirrored-transforms",
-    case_25_fill_outside_its_range = "fill-outside-its-range",
-    case_28_w_ratios = "w-ratios",
     case_29_after_a_day = "after-a-day",
     case_30_unusual_skins = "unusual-skins",
     case_30_rotations_of_any_length = "rotations-of-any-length",
     case_30_skins_beside_other_meshes = "skins-beside-other-meshes",
     case_30_culled_skins = "culled-skins",
-    case_30_invalid_skins = "invalid-skins",
     case_32_hardware_cross_check = "hardware-cross-check",
     case_34_slivers_at_the_border = "slivers-at-the-border",
     case_34_culled_behind_holes = "culled-behind-holes",
@@ -110,10 +181,9 @@ cases! {
 }
 
 /// Sweeps over many or very large pictures, which take most of the time of all cases together:
-/// `rasterlab stress` draws them, as a step of the continuous integration.
+/// `rasterlab-fuzz cases` draws them, as a step of the continuous integration.
 const SWEEPS: &[&str] = &[
     "near-plane-sweep",
-    "largest-pictures",
     "xray-at-5k",
     "glass-at-4k",
     "binding-too-large",
@@ -121,7 +191,6 @@ const SWEEPS: &[&str] = &[
     "hundred-equal-frames",
     "draw-order-over-32-bits",
     "scheduler-order-over-32-bits",
-    "million-triangles",
     "ten-million-triangles",
     "thousand-full-screen-triangles",
     "parameters-at-range-ends",
@@ -135,7 +204,6 @@ const SWEEPS: &[&str] = &[
     "fill",
     "workgroups-indirect",
     "layers-on-one-pixel",
-    "layers-of-glass-on-one-pixel",
     "strict-rows",
     "written-corpus",
 ];
@@ -151,7 +219,7 @@ const BY_HAND: &[&str] = &[
 ];
 
 #[test]
-fn every_case_of_the_table_is_tested_here_or_is_a_sweep_of_the_continuous_integration() {
+fn every_case_that_needs_code_is_tested_here_or_is_a_sweep_of_the_continuous_integration() {
     let tested: BTreeSet<&str> = TESTED
         .iter()
         .chain(SWEEPS)
@@ -160,30 +228,16 @@ fn every_case_of_the_table_is_tested_here_or_is_a_sweep_of_the_continuous_integr
         .collect();
     let listed: BTreeSet<&str> = stress::cases().iter().map(|case| case.name).collect();
     assert_eq!(tested, listed);
-    assert_eq!(
-        TESTED.len() + SWEEPS.len() + BY_HAND.len(),
-        listed.len(),
-        "a case is tested twice"
-    );
     let steps = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(".ci/full"))
         .expect(".ci/full can be read");
-    let names: String = steps
+    let line = steps
         .lines()
-        .filter_map(|line| {
-            line.strip_prefix("sweeps=")
-                .or(line.strip_prefix("sweeps+="))
-        })
-        .collect();
+        .find_map(|line| line.split_once("rasterlab-fuzz -- cases "));
+    let names = line.map(|(_, names)| names.split(',').collect::<Vec<_>>());
     assert_eq!(
-        names.split(',').collect::<Vec<_>>(),
-        SWEEPS,
+        names.as_deref(),
+        Some(SWEEPS),
         "the cases that .ci/full draws"
-    );
-    assert!(
-        steps
-            .lines()
-            .any(|line| line == "\"$lab\" stress --filter \"$sweeps\""),
-        "no step of .ci/full draws them"
     );
 }
 
@@ -193,8 +247,8 @@ fn a_case_can_be_stopped_between_pictures() {
         return;
     };
     let heard = Cell::new(0);
-    let report = case("sizes").run(&mut renderer, 0, &|what| {
-        assert!(what.contains("px"), "{what}");
+    let report = case("relative-positions").run(&mut renderer, 0, &|what| {
+        assert!(what.contains("units away"), "{what}");
         heard.set(heard.get() + 1);
         heard.get() < 3
     });
@@ -203,9 +257,7 @@ fn a_case_can_be_stopped_between_pictures() {
         (Outcome::Stopped, 3, 3)
     );
     assert_eq!(
-        case("d3d-rectangle")
-            .run(&mut renderer, 0, &|_| true)
-            .outcome,
+        case("d3d-snap").run(&mut renderer, 0, &|_| true).outcome,
         Outcome::Passed,
         "the next case is not affected"
     );
@@ -216,15 +268,14 @@ fn a_panic_in_a_case_is_a_failure_of_that_case_alone() {
     let Some(mut renderer) = renderer() else {
         return;
     };
-    let report = case("sizes").run(&mut renderer, 0, &|_| panic!("the listener fails"));
+    let report =
+        case("relative-positions").run(&mut renderer, 0, &|_| panic!("the listener fails"));
     assert_eq!(
         report.outcome,
         Outcome::Failed("the program panicked: the listener fails".into())
     );
     assert_eq!(
-        case("d3d-rectangle")
-            .run(&mut renderer, 0, &|_| true)
-            .outcome,
+        case("d3d-snap").run(&mut renderer, 0, &|_| true).outcome,
         Outcome::Passed
     );
 }
@@ -239,7 +290,7 @@ fn another_seed_gives_other_cases_and_is_named() {
     assert_eq!([first.seed, second.seed], [Some(1), Some(0xffff_0000)]);
     assert_eq!([&first.outcome, &second.outcome], [&Outcome::Passed; 2]);
     assert_eq!(
-        case("d3d-rectangle").run(&mut renderer, 1, &|_| true).seed,
+        case("d3d-snap").run(&mut renderer, 1, &|_| true).seed,
         None,
         "a case without random numbers reports no seed"
     );
@@ -276,17 +327,26 @@ const MUTANTS: &[(&str, &str, &str, &str)] = &[
 #[test]
 fn the_judge_of_every_kind_of_case_can_fail() {
     let Some(healthy) = renderer() else { return };
+    let presets = extremes::Cases::unpack().expect("a folder for temporary files");
     let mut blind = Vec::new();
     for (what, from, to, name) in MUTANTS {
         let library = mutated(from, to);
         let mut wrong = Renderer::with_library(healthy.gpu().clone(), library.shaders());
-        let report = case(name).run(&mut wrong, 0, &|_| true);
-        eprintln!("{what}: {}", report.outcome.why().unwrap_or("not seen"));
-        let has_panicked = report
-            .outcome
-            .why()
-            .is_some_and(|why| why.contains("the program panicked"));
-        if !report.outcome.is_failure() || has_panicked {
+        let why = if extremes::names(None).contains(name) {
+            let report = presets.run(name, &mut wrong, &|_| true);
+            report
+                .outcome
+                .is_failure()
+                .then(|| report.outcome.why().unwrap_or_default().to_owned())
+        } else {
+            let report = case(name).run(&mut wrong, 0, &|_| true);
+            report
+                .outcome
+                .is_failure()
+                .then(|| report.outcome.why().unwrap_or_default().to_owned())
+        };
+        eprintln!("{what}: {}", why.as_deref().unwrap_or("not seen"));
+        if why.is_none_or(|why| why.contains("the program panicked")) {
             blind.push(format!("{name} does not see: {what}"));
         }
     }

@@ -7,8 +7,8 @@ use rasterlab::{
     gpu::RenderError,
     preset::Preset,
     preset_file,
-    stress::random::{self, Values},
 };
+use rasterlab_fuzz::stress::random::{self, Values};
 
 use crate::common::*;
 

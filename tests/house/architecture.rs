@@ -36,7 +36,7 @@ const ORDER: &[(&str, &[&str])] = &[
         "crates/files",
         &["host", "archive", "effect_files", "preset_file", "film"],
     ),
-    ("crates/bench", &["baselines", "trade", "stress"]),
+    ("crates/bench", &["baselines", "trade", "extremes"]),
     (".", &["link", "golden", "app", "cli"]),
 ];
 

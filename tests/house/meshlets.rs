@@ -4,13 +4,11 @@
 use std::sync::Arc;
 
 use glam::DVec3;
-use rasterlab::{
-    scene::{
-        Scene, builtin,
-        meshlets::{MESHLET_TRIANGLES, Meshlets},
-    },
-    stress::scenes::Rng,
+use rasterlab::scene::{
+    Scene, builtin,
+    meshlets::{MESHLET_TRIANGLES, Meshlets},
 };
+use rasterlab_fuzz::stress::scenes::Rng;
 
 /// Divides the first mesh of a built-in scene.
 fn divided(query: &str) -> (Arc<Scene>, Meshlets) {

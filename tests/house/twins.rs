@@ -17,8 +17,8 @@ use rasterlab::{
     params::ValueType,
     scene::{Bounds, camera::Camera, view::View},
     shader::library::Library,
-    stress::scenes::Rng,
 };
+use rasterlab_fuzz::stress::scenes::Rng;
 
 /// Largest difference, relative to the largest component, or to 1.
 const TOLERANCE: f64 = 1e-9;

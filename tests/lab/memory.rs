@@ -46,7 +46,7 @@ fn extremes(lab: &mut Lab) {
         click(lab, Role::Button, "Run extreme cases…");
         lab.get_by_label("Cases").focus();
         lab.run_steps(2);
-        lab.get_by_label("Cases").type_text("largest-pictures");
+        lab.get_by_label("Cases").type_text("largest-width");
         lab.run_steps(3);
     }
     click(lab, Role::Button, "Run 1 case");

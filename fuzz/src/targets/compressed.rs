@@ -12,7 +12,6 @@ pub const TARGET: Target = Target {
     name: "compressed",
     about: "Draco and meshopt streams of models",
     views: &[],
-    words: &["DRACO", "\u{2}\u{2}", "\u{1}\u{1}"],
     limit: Limit::new(20, 2048),
     check,
 };

@@ -10,10 +10,6 @@ pub const TARGET: Target = Target {
     name: "image",
     about: "PNG, JPEG and WebP images of models",
     views: &[views::PNG_CHUNKS],
-    words: &[
-        "IHDR", "PLTE", "IDAT", "IEND", "tRNS", "gAMA", "iCCP", "acTL", "fcTL", "fdAT", "JFIF",
-        "Exif", "RIFF", "WEBP", "VP8 ", "VP8L", "VP8X", "ALPH", "ANIM",
-    ],
     limit: Limit::new(20, 2048),
     check,
 };

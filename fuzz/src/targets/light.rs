@@ -9,15 +9,6 @@ pub const TARGET: Target = Target {
     name: "light",
     about: "Radiance pictures of what surrounds a scene",
     views: &[],
-    words: &[
-        "#?RADIANCE",
-        "#?RGBE",
-        "FORMAT=32-bit_rle_rgbe",
-        "EXPOSURE=",
-        "-Y 8192 +X 4096",
-        "\x02\x02",
-        "\x01\x01\x01",
-    ],
     limit: Limit::new(5, 64),
     check,
 };

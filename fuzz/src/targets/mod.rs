@@ -23,8 +23,6 @@ pub struct Target {
     pub about: &'static str,
     /// What is packed inside of its input.
     pub views: &'static [View],
-    /// Words that its input understands.
-    pub words: &'static [&'static str],
     pub limit: Limit,
     /// Reads the input. Panics, with a sentence, where it is not handled as promised.
     pub check: fn(&[u8]) -> Outcome,

@@ -11,7 +11,6 @@ pub const TARGET: Target = Target {
     name: "picture",
     about: "PNG files with a preset in their text, and frames of films",
     views: &[views::PNG_CHUNKS, views::PNG_TEXT, views::PNG_TEXT],
-    words: preset::WORDS,
     limit: Limit::new(10, 2560),
     check,
 };

@@ -9,7 +9,6 @@ pub const TARGET: Target = Target {
     name: "share",
     about: "shared and pasted lines",
     views: &[views::SHARED_TOML, views::SHARED_TOML],
-    words: preset::WORDS,
     limit: Limit::new(5, 256),
     check,
 };

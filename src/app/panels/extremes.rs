@@ -1,4 +1,4 @@
-//! Extreme cases: runs the table of the stress test on a second device, while the window stays
+//! Extreme cases: draws and judges their presets on a second device, while the window stays
 //! responsive.
 
 use std::{
@@ -22,8 +22,8 @@ use crate::{
         trade::pace::about,
         widgets::{panel::Panel, theme},
     },
+    extremes::{Cases, Outcome, Report, names},
     gpu::{Gpu, Renderer, device::AdapterChoice},
-    stress::{self, Case, Outcome, Report},
     work::Work,
 };
 
@@ -32,7 +32,6 @@ use crate::{
 pub struct Extremes {
     is_open: bool,
     filter: String,
-    seed: u32,
     run: Option<Arc<Run>>,
     /// The log says how the run ended.
     is_reported: bool,
@@ -76,19 +75,20 @@ impl Run {
     /// Draws the cases one after another on a device of their own.
     fn draw(
         &self,
-        cases: &[&Case],
+        names: &[&'static str],
         adapter: String,
-        seed: u32,
         ctx: &egui::Context,
     ) -> Result<(), String> {
+        let cases =
+            Cases::unpack().map_err(|error| format!("the cases cannot be written: {error}"))?;
         let gpu = Gpu::open(&AdapterChoice::Named(adapter))
             .block_on()
             .map_err(|error| error.to_string())?;
         let mut renderer = Renderer::new(gpu.clone());
-        for case in cases {
+        for name in names {
             let run = || {
-                case.run(&mut renderer, seed, &|what| {
-                    self.progress().now = format!("{}: {what}", case.name);
+                cases.run(name, &mut renderer, &|what| {
+                    self.progress().now = format!("{name}: {what}");
                     ctx.request_repaint_after(Duration::from_millis(100));
                     !self.work.is_canceled()
                 })
@@ -123,22 +123,20 @@ impl Extremes {
     }
 
     fn start(&mut self, adapter: String, computing: Computing, ctx: &egui::Context) {
-        let cases = stress::chosen(Some(&self.filter));
+        let names = names(Some(&self.filter));
         let run = Arc::new(Run {
-            planned: cases.len(),
+            planned: names.len(),
             work: Arc::default(),
             began: Instant::now(),
             progress: Mutex::default(),
         });
-        let (seed, ctx, shared) = (self.seed, ctx.clone(), run.clone());
+        let (ctx, shared) = (ctx.clone(), run.clone());
         let work = move || {
             let _computing = computing;
-            let result = catch_unwind(AssertUnwindSafe(|| {
-                shared.draw(&cases, adapter, seed, &ctx)
-            }))
-            .unwrap_or_else(|_| {
-                Err("the run failed because of a bug; see the terminal for details".into())
-            });
+            let result = catch_unwind(AssertUnwindSafe(|| shared.draw(&names, adapter, &ctx)))
+                .unwrap_or_else(|_| {
+                    Err("the run failed because of a bug; see the terminal for details".into())
+                });
             memory::give_back();
             let mut progress = shared.progress();
             progress.error = result.err();
@@ -218,16 +216,10 @@ impl Extremes {
             .iter()
             .filter(|report| report.outcome.is_failure())
         {
-            let seed = report
-                .seed
-                .map_or_else(String::new, |seed| format!(", seed {seed}"));
             let why = report.outcome.why().unwrap_or_default();
             commands.send(Command::Log(
                 Level::Error,
-                format!(
-                    "extreme case {}, {}{seed}: {why}",
-                    report.number, report.name
-                ),
+                format!("extreme case {}: {why}", report.name),
             ));
         }
         commands.send(match &progress.error {
@@ -240,12 +232,12 @@ impl Extremes {
     }
 
     fn start_ui(&mut self, ui: &mut Ui, state: &State) {
-        let about = "Slivers, ties, NaN, full queues, huge numbers: each case is compared with the oracle, on a second device.";
+        let about = "Slivers, ties, needles, deep stacks, huge numbers: each case is compared with the oracle, on a second device.";
         ui.label(theme::weak(about));
         ui.add_space(theme::HALF);
         let is_running = self.is_running();
         ui.horizontal(|ui| {
-            let found = stress::chosen(Some(&self.filter)).len();
+            let found = names(Some(&self.filter)).len();
             if is_running {
                 if ui.button("Stop the run").clicked() {
                     self.stop();
@@ -265,13 +257,10 @@ impl Extremes {
                     );
                 }
             }
-            let filter = egui::TextEdit::singleline(&mut self.filter)
-                .hint_text("All; a number or part of a name");
+            let filter =
+                egui::TextEdit::singleline(&mut self.filter).hint_text("All; a part of a name");
             ui.add_enabled(!is_running, filter.desired_width(220.0))
                 .accessible_name("Cases");
-            ui.label("Seed");
-            ui.add_enabled(!is_running, egui::DragValue::new(&mut self.seed))
-                .accessible_name("Seed of the random cases");
         });
     }
 }
@@ -344,34 +333,18 @@ fn run_ui(ui: &mut Ui, run: &Run, height: f32) {
 fn report_ui(ui: &mut Ui, report: &Report) {
     let color: Color32 = match report.outcome {
         Outcome::Passed | Outcome::Refused(_) => theme::green(),
-        Outcome::Skipped(_) | Outcome::Stopped => theme::amber(),
+        Outcome::Stopped => theme::amber(),
         Outcome::Failed(_) => theme::red(),
     };
     ui.horizontal(|ui| {
-        ui.add_sized(
-            [24.0, 16.0],
-            egui::Label::new(theme::weak(report.number.to_string())),
-        );
         ui.add(egui::Label::new(RichText::new(report.name).color(theme::text_strong())).truncate())
-            .on_hover_text(format!(
-                "{}\nExpected: {}",
-                report.about, report.expectation
-            ));
+            .on_hover_text(&report.about);
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             ui.label(theme::weak(format!("{:.0} ms", report.ms)));
             ui.label(RichText::new(report.outcome.word().to_lowercase()).color(color));
         });
     });
-    let seed = report
-        .seed
-        .filter(|_| report.outcome.is_failure())
-        .map(|seed| format!("Seed {seed}"));
-    let why = report.outcome.why().map(str::to_owned);
-    for text in why
-        .into_iter()
-        .chain(seed)
-        .chain(report.notes.iter().cloned())
-    {
-        ui.label(theme::weak(text));
+    if let Some(why) = report.outcome.why() {
+        ui.label(theme::weak(why));
     }
 }

@@ -29,9 +29,9 @@ use rasterlab::{
         draw::draws,
         view::View,
     },
-    stress::scenes::{
-        Rng, SimpleMesh, pixel_view, scene_of_meshes, square_perspective, triangle_soup,
-    },
+};
+use rasterlab_fuzz::stress::scenes::{
+    Rng, SimpleMesh, pixel_view, scene_of_meshes, square_perspective, triangle_soup,
 };
 
 fn scene(meshes: &[SimpleMesh]) -> Scene {

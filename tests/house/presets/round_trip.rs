@@ -206,7 +206,7 @@ prop_compose! {
             stack,
             accuracy: AccuracyRequest { tier: Tier::ALL[tier], pins: visibility.map_or(PinnedOptions::default(), |i| PinnedOptions::of(Visibility::EXACT[i])), ..AccuracyRequest::default() },
             output: Output { size, background, background_bottom, reference_height_px: (size[1] % 3 == 1).then_some(240) },
-            test: test.map(|(max_channel, max_pixels)| GoldenTest { max_channel, max_pixels, max_wrong_triangles: 0, why: format!("because {why}") }),
+            test: test.map(|(max_channel, max_pixels)| GoldenTest { max_channel, max_pixels, max_wrong_triangles: 0, why: format!("because {why}"), ..GoldenTest::default() }),
         }
     }
 }
@@ -264,7 +264,7 @@ proptest! {
 #[test]
 fn every_random_preset_is_one_that_a_file_may_hold() {
     for seed in 0..60 {
-        let random = PresetFile::new("random", rasterlab::stress::random::preset(seed));
+        let random = PresetFile::new("random", rasterlab_fuzz::stress::random::preset(seed));
         let text = preset_file::to_toml(&random);
         let read = preset_file::parse(&text, "random")
             .unwrap_or_else(|error| panic!("seed {seed}: {error}\n{text}"));

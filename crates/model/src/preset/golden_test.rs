@@ -17,7 +17,22 @@ pub struct GoldenTest {
     pub max_wrong_triangles: u32,
     /// Why a budget above the default is needed.
     pub why: String,
+    /// Fewest and most pixels that show a triangle.
+    pub covered: [f64; 2],
+    /// Fewest and most samples that triangles cover, each triangle counted.
+    pub hits: [f64; 2],
+    /// Fewest and most triangles that are clipped.
+    pub clipped: [f64; 2],
+    /// Fewest and most triangles without area after the snap.
+    pub degenerate: [f64; 2],
+    /// Fewest and most triangles with a corner that is not finite or too far away.
+    pub rejected: [f64; 2],
+    /// The preset is refused with a sentence that has these words; empty: it is drawn.
+    pub refused: String,
 }
+
+/// Any count.
+const ANY: [f64; 2] = [0.0, 1e9];
 
 impl Default for GoldenTest {
     fn default() -> Self {
@@ -26,6 +41,12 @@ impl Default for GoldenTest {
             max_pixels: 0,
             max_wrong_triangles: 0,
             why: String::new(),
+            covered: ANY,
+            hits: ANY,
+            clipped: ANY,
+            degenerate: ANY,
+            rejected: ANY,
+            refused: String::new(),
         }
     }
 }
@@ -76,5 +97,37 @@ impl GoldenTest {
             .map_or_else(Vec::new, |reasons| {
                 reasons.split("; ").map(str::to_owned).collect()
             })
+    }
+
+    /// Is this sentence the refusal that the test asks for?
+    pub fn expects_refusal(&self, sentence: &str) -> bool {
+        !self.refused.is_empty() && sentence.contains(&self.refused)
+    }
+
+    /// What the counts of a picture are that the test does not allow. Without `layers`, hits are
+    /// not counted.
+    pub fn count_faults(&self, drawn: &Frame, layers: Option<&[u32]>) -> Vec<String> {
+        let counters = &drawn.counters;
+        let hits = layers.map(|layers| layers.iter().map(|&hits| f64::from(hits)).sum());
+        let rejected = counters.rejected_nonfinite + counters.rejected_range;
+        [
+            ("covered", Some(drawn.covered() as f64), self.covered),
+            ("hits", hits, self.hits),
+            ("clipped", Some(counters.clipped.into()), self.clipped),
+            (
+                "degenerate",
+                Some(counters.degenerate.into()),
+                self.degenerate,
+            ),
+            ("rejected", Some(rejected.into()), self.rejected),
+        ]
+        .into_iter()
+        .filter_map(|(name, count, [least, most])| {
+            let count = count.filter(|count| !(least..=most).contains(count))?;
+            Some(format!(
+                "test.{name} is {count}; allowed: {least} to {most}"
+            ))
+        })
+        .collect()
     }
 }

@@ -502,7 +502,7 @@ pub static OUTPUT: Section = Section {
 
 pub static TEST: Section = Section {
     name: "test",
-    doc: "How far a picture may differ from the golden; a preset without this table has no golden",
+    doc: "What must hold of a picture, and how far it may differ from the golden; a preset without this table has no golden",
     settings: LazyLock::new(|| {
         in_section(
             "test",
@@ -531,6 +531,42 @@ pub static TEST: Section = Section {
                     PARAGRAPH,
                     "Why a budget above the default is needed",
                     section_field!(test.why),
+                ),
+                Setting::new(
+                    "covered",
+                    ValueType::Interval,
+                    "Fewest and most pixels that show a triangle",
+                    section_field!(test.covered),
+                ),
+                Setting::new(
+                    "hits",
+                    ValueType::Interval,
+                    "Fewest and most samples that triangles cover, each triangle counted",
+                    section_field!(test.hits),
+                ),
+                Setting::new(
+                    "clipped",
+                    ValueType::Interval,
+                    "Fewest and most triangles that are clipped",
+                    section_field!(test.clipped),
+                ),
+                Setting::new(
+                    "degenerate",
+                    ValueType::Interval,
+                    "Fewest and most triangles without area after the snap",
+                    section_field!(test.degenerate),
+                ),
+                Setting::new(
+                    "rejected",
+                    ValueType::Interval,
+                    "Fewest and most triangles with a corner that is not finite or too far away",
+                    section_field!(test.rejected),
+                ),
+                Setting::new(
+                    "refused",
+                    LINE,
+                    "The preset must be refused with a sentence that has these words",
+                    section_field!(test.refused),
                 ),
             ],
         )
