@@ -183,6 +183,7 @@ impl Reach {
 }
 
 /// Two tests of each function of a [`Reach`].
+#[allow(unused_macros)]
 macro_rules! few_and_all {
     ($($test:ident),* $(,)?) => {
         $(mod $test {

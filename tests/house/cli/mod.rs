@@ -1235,10 +1235,7 @@ fn stress_says_what_it_expected_and_what_became_of_it() {
             .is_some_and(|why| why.contains("layers of glass, the most")),
         "{result}"
     );
-    assert!(
-        result["ms"].as_f64().is_some_and(|ms| ms > 0.0) && result["notes"].is_array(),
-        "{result}"
-    );
+    assert!(result["ms"].as_f64().is_some_and(|ms| ms > 0.0), "{result}");
 }
 
 #[test]

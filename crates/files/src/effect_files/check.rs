@@ -9,10 +9,11 @@ use naga::{
 };
 
 use super::{
-    declaration::{self, Declaration},
+    declaration::Declaration,
     error::{EffectError, Text},
     rewrite::{Rewritten, in_names_of_author},
     tokens::Token,
+    words,
 };
 use crate::{
     effects::Effect,
@@ -225,11 +226,7 @@ fn hint(message: &str) -> String {
             .any(|head| text.contains(head))
         })
     };
-    let file = name.and_then(|name| {
-        declaration::LIBRARY
-            .into_iter()
-            .find(|file| declares(name, file))
-    });
+    let file = name.and_then(|name| words::LIBRARY.into_iter().find(|file| declares(name, file)));
     file.map_or(String::new(), |file| {
         format!("; lib/{file} declares it: add the line //@ use lib/{file}")
     })
@@ -371,7 +368,7 @@ fn of_link(parts: Parts<'_>, error: &LinkError) -> EffectError {
         } if *file == format!("effects/{stem}") => {
             let is_open = declared_in
                 .strip_prefix("lib/")
-                .is_some_and(|file| declaration::LIBRARY.contains(&file));
+                .is_some_and(|file| words::LIBRARY.contains(&file));
             let message = match is_open {
                 true => format!(
                     "{name} is declared in {declared_in}; add the line //@ use {declared_in}"

@@ -9,31 +9,12 @@ use super::{
     error::{EffectError, Text},
     parameters::{self, Parameters},
     tokens::{Token, closing, tokens},
-    words,
+    words::{self, LIBRARY},
 };
 use crate::effects::{
     HookFunctions,
     hooks::{EarlierFrames, ImagePass},
 };
-
-/// Files of `shaders/lib` that an effect file may use: pure functions and the types of hooks.
-pub const LIBRARY: [&str; 15] = [
-    "angle",
-    "bayer",
-    "color",
-    "environment",
-    "front",
-    "hash",
-    "image",
-    "image_direction",
-    "image_file",
-    "image_pass",
-    "lattice",
-    "noise",
-    "sample",
-    "surface",
-    "vertex",
-];
 
 /// The hooks: type of the first parameter, type of the result, and the library file that declares
 /// the former.

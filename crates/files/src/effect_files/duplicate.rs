@@ -4,9 +4,9 @@
 use std::{fmt::Write, sync::Arc};
 
 use super::{
-    declaration::LIBRARY,
     template::type_name,
     tokens::{closing, tokens},
+    words::LIBRARY,
 };
 use crate::{
     effects::{Effect, hooks::ImagePass},

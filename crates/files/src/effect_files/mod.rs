@@ -22,7 +22,6 @@ mod words;
 
 pub use self::{
     catalog::{Catalog, CustomEffect},
-    declaration::LIBRARY,
     duplicate::duplicate,
     error::{EffectError, Place},
     evaluated::{EvaluatedError, evaluated},
@@ -31,4 +30,5 @@ pub use self::{
     rewrite::MAX_TURNS,
     soundness::{Crossing, Unsound, crossings},
     template::{Hook, template},
+    words::LIBRARY,
 };

@@ -9,6 +9,25 @@ use super::{
     tokens::Token,
 };
 
+/// Files of `shaders/lib` that an effect file may use: pure functions and the types of hooks.
+pub const LIBRARY: [&str; 15] = [
+    "angle",
+    "bayer",
+    "color",
+    "environment",
+    "front",
+    "hash",
+    "image",
+    "image_direction",
+    "image_file",
+    "image_pass",
+    "lattice",
+    "noise",
+    "sample",
+    "surface",
+    "vertex",
+];
+
 /// Is it a word of the language: a keyword, or reserved for one?
 pub fn is_reserved(name: &str) -> bool {
     RESERVED.contains(&name) || name == "_" || name.starts_with("__")
