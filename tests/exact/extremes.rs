@@ -176,7 +176,6 @@ cases! {
     case_32_hardware_cross_check = "hardware-cross-check",
     case_34_slivers_at_the_border = "slivers-at-the-border",
     case_34_culled_behind_holes = "culled-behind-holes",
-    case_36_every_pair = "every-pair",
     case_37_written_sample = "written-sample",
 }
 
@@ -206,6 +205,7 @@ const SWEEPS: &[&str] = &[
     "layers-on-one-pixel",
     "strict-rows",
     "written-corpus",
+    "every-pair",
 ];
 
 /// Drawn by hand before a release, since lavapipe compiles kernels for each of their pictures: some
@@ -302,7 +302,7 @@ const MUTANTS: &[(&str, &str, &str, &str)] = &[
         "half of a tile is skipped",
         "block < 16",
         "block < 8",
-        "slivers",
+        "guard-band",
     ),
     (
         "65,535 groups at most",
