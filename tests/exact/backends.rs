@@ -161,7 +161,7 @@ fn packed32_loses_depth_and_nothing_else(reach: Reach) {
     let Some(mut renderer) = loan() else { return };
     let mut lost = 0;
     for query in reach.of(
-        3,
+        6,
         [
             "knot?tess=24",
             "field?count=27&triangles=200",

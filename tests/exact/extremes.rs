@@ -302,7 +302,7 @@ const MUTANTS: &[(&str, &str, &str, &str)] = &[
         "half of a tile is skipped",
         "block < 16",
         "block < 8",
-        "guard-band",
+        "size-class-borders",
     ),
     (
         "65,535 groups at most",

@@ -422,20 +422,22 @@ fn escape_closes_the_innermost_first() {
     };
     press(&mut lab, Modifiers::NONE, Key::L);
     press(&mut lab, Modifiers::NONE, Key::M);
-    press(&mut lab, Modifiers::COMMAND, Key::Comma);
-    press(&mut lab, Modifiers::COMMAND, Key::O);
     let is_open = |lab: &Lab| {
         [
             lab.query_by_role_and_label(Role::TextInput, "Path")
                 .is_some(),
-            lab.query_by_role_and_label(Role::TextInput, "Search keys")
+            lab.query_by_role_and_label(Role::TextInput, "Search actions and keys")
                 .is_some(),
             lab.state().is_trade_open(),
             lab.query_by_label("Clear the log").is_some(),
         ]
     };
-    assert_eq!(is_open(&lab), [true; 4]);
-    for closed in 1..=4 {
+    press(&mut lab, Modifiers::COMMAND, Key::O);
+    assert_eq!(is_open(&lab), [true, false, true, true]);
+    press(&mut lab, Modifiers::NONE, Key::Escape);
+    press(&mut lab, Modifiers::COMMAND, Key::Comma);
+    assert_eq!(is_open(&lab), [false, true, true, true]);
+    for closed in 2..=4 {
         press(&mut lab, Modifiers::NONE, Key::Escape);
         assert_eq!(
             is_open(&lab),
