@@ -154,7 +154,8 @@ fn float_functions() {
             _ => 2.0 * (a / 2.0).round(),
         }
     });
-    let functions: [(&str, fn(f64) -> f64); 18] = [
+    type Function = fn(f64) -> f64;
+    let functions: [(&str, Function); 18] = [
         ("sqrt", f64::sqrt),
         ("exp", f64::exp),
         ("exp2", f64::exp2),
