@@ -2,9 +2,9 @@
 //! the right, the timeline and the log below. All of it edits one preset, and only that decides
 //! what is drawn.
 //!
-//! A panel owns its own state, reads `state::State` and sends `command::Command`s; `apply` carries
-//! them out after the panel was shown. Slow work runs in `jobs`; the window never waits for a
-//! thread or a device.
+//! A panel owns its own state, reads `state::State` and sends closures on `App`, which are run after
+//! the panel was shown. Slow work runs in `jobs` and ends with such a closure; the window never waits
+//! for a thread or a device.
 
 mod editing;
 mod files;

@@ -5,7 +5,7 @@ use eframe::egui::{self, Key, RichText, Ui};
 use crate::app::{
     shell::{
         action::{Action, POINTER, actions, shortcut_text},
-        command::{Command, Commands, Toggle},
+        command::Commands,
         state::State,
     },
     widgets::{panel::Panel, theme},
@@ -51,7 +51,7 @@ impl Panel for CheatSheet {
         // The key that opens it closes it, too; the search would keep it.
         is_open &= !ctx.input(|i| i.key_pressed(Key::F1));
         if state.open.cheat_sheet && !is_open {
-            commands.send(Command::Toggle(Toggle::CheatSheet));
+            commands.perform(Action::CheatSheet);
         }
     }
 }

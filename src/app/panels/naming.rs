@@ -4,11 +4,9 @@ use eframe::egui::{self, Button, Key, RichText, TextEdit, Ui};
 
 use crate::{
     app::{
-        files::command::{LibraryCommand, Naming},
-        shell::{
-            command::{Command, Commands},
-            state::State,
-        },
+        files::command::Naming,
+        files::library,
+        shell::{command::Commands, state::State},
         widgets::{panel::Panel, theme},
     },
     preset_file::MAX_NAME,
@@ -82,7 +80,7 @@ impl Panel for NameDialog {
         match choice {
             Some(Choice::Accept) => {
                 if let Some(Open { naming, name, .. }) = self.0.take() {
-                    commands.send(Command::Library(LibraryCommand::Name(naming, name)));
+                    commands.run(|app| library::use_name(app, naming, name));
                 }
             }
             Some(Choice::Cancel) => self.0 = None,

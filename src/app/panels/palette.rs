@@ -8,7 +8,7 @@ use eframe::egui::{
 use crate::{
     app::{
         editing::session::Session,
-        palette::{Choice, Entry, MAX_LISTED, commands, entries, rank},
+        palette::{Choice, Entry, MAX_LISTED, entries, perform, rank},
         shell::{action::Action, command::Commands, state::State},
         widgets::{panel::Panel, theme},
     },
@@ -83,9 +83,7 @@ impl Palette {
         self.recent.retain(|text| *text != entry.text);
         self.recent.insert(0, entry.text);
         self.recent.truncate(MAX_RECENT);
-        commands(entry.choice)
-            .into_iter()
-            .for_each(|command| to.send(command));
+        perform(entry.choice, to);
     }
 }
 

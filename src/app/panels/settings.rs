@@ -3,10 +3,14 @@
 use eframe::egui::{self, Event, Key, RichText, Ui, vec2};
 
 use crate::app::{
-    settings::{SCALES, keymap},
+    settings::{
+        SCALES,
+        keymap::{self, Keymap},
+    },
     shell::{
         action::{Action, actions, shortcut_text},
-        command::{Command, Commands, SettingsCommand, Toggle},
+        command::Commands,
+        log::Level,
         state::State,
     },
     widgets::{
@@ -30,8 +34,16 @@ impl SettingsWindow {
         self.binding.is_some()
     }
 
-    fn send(commands: &Commands, command: SettingsCommand) {
-        commands.send(Command::Settings(command));
+    /// Changes the keys; a key that belongs to another action is refused.
+    fn change(
+        commands: &Commands,
+        change: impl FnOnce(&mut Keymap) -> Result<(), String> + 'static,
+    ) {
+        commands.run(|app| {
+            if let Err(refused) = change(&mut app.state.settings.keys) {
+                app.notify(Level::Warning, refused);
+            }
+        });
     }
 
     /// Takes the key that is pressed for the action that waits for one. Escape ends the waiting.
@@ -56,10 +68,8 @@ impl SettingsWindow {
         };
         self.binding = None;
         if key != Key::Escape {
-            Self::send(
-                commands,
-                SettingsCommand::Bind(action, Some(keymap::pressed(key, modifiers))),
-            );
+            let shortcut = keymap::pressed(key, modifiers);
+            Self::change(commands, move |keys| keys.bind(action, shortcut));
         }
     }
 
@@ -72,7 +82,7 @@ impl SettingsWindow {
                     .on_hover_text("Give every action its own keys again")
                     .clicked()
                 {
-                    Self::send(commands, SettingsCommand::ResetAllKeys);
+                    commands.run(|app| app.state.settings.keys.reset_all());
                 }
                 let search = egui::TextEdit::singleline(&mut self.search)
                     .hint_text("Search")
@@ -144,13 +154,13 @@ impl SettingsWindow {
                             .inner
                             .clicked()
                         {
-                            Self::send(commands, SettingsCommand::Bind(*action, None));
+                            commands.run(|app| app.state.settings.keys.clear(*action));
                         }
                         if keys.is_bound(*action)
                             && icon_button(ui, Icon::Reset, &format!("Reset keys of {label}"))
                                 .clicked()
                         {
-                            Self::send(commands, SettingsCommand::ResetKeys(*action));
+                            Self::change(commands, |keys| keys.reset(*action));
                         }
                     });
                 }
@@ -182,7 +192,9 @@ impl Panel for SettingsWindow {
                             .selectable_label(state.settings.theme == choice, choice.label())
                             .clicked()
                         {
-                            Self::send(commands, SettingsCommand::Theme(choice));
+                            commands.run(move |app| {
+                                app.change_settings(|settings| settings.theme = choice)
+                            });
                         }
                     }
                 });
@@ -196,7 +208,7 @@ impl Panel for SettingsWindow {
                 );
             });
         if !is_open {
-            commands.send(Command::Toggle(Toggle::Settings));
+            commands.perform(Action::Settings);
         }
     }
 }

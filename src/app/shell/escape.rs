@@ -4,102 +4,77 @@
 use eframe::egui::{self, Key, Modifiers};
 
 use super::{
-    command::{Command, Commands, Toggle},
-    state::State,
+    apply::{toggle_film, toggle_review},
+    window::App,
 };
-use crate::app::{panels::Panels, picture::command::ViewCommand};
+use crate::app::{
+    files::open::cancel_loading,
+    picture::apply::{mark, measure},
+};
 
-/// What Escape closes next.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Closing {
-    Loading,
-    Picking,
-    Marker,
-    Measuring,
-    Film,
-    Sweep,
-    Randomize,
-    Extremes,
-    Review,
-    Settings,
-    CheatSheet,
-    Compare,
-    Trade,
-    Timing,
-    Log,
-}
-
-/// Closes the innermost thing if Escape was pressed. `was_typing`: a text field had the focus in
-/// the frame before, and Escape has just taken it away.
-pub fn escape(
-    ctx: &egui::Context,
-    state: &State,
-    panels: &mut Panels,
-    was_typing: bool,
-    commands: &Commands,
-) {
+/// Closes the innermost thing if Escape was pressed. `was_typing`: a text field had the focus in the
+/// frame before, and Escape has just taken it away.
+pub fn escape(app: &mut App, was_typing: bool) {
     // Dialogs and menus close themselves.
-    if panels.has_dialog()
-        || egui::Popup::is_any_open(ctx)
-        || !ctx.input(|i| i.key_pressed(Key::Escape))
+    if app.panels.has_dialog()
+        || egui::Popup::is_any_open(&app.ctx)
+        || !app.ctx.input(|i| i.key_pressed(Key::Escape))
     {
         return;
     }
-    let Some(closing) = innermost(state, panels) else {
+    let Some((is_window, close)) = innermost(app) else {
         return;
     };
     // The search of a window is a part of it.
-    let is_window = matches!(
-        closing,
-        Closing::Film
-            | Closing::Sweep
-            | Closing::Randomize
-            | Closing::Extremes
-            | Closing::Review
-            | Closing::Settings
-            | Closing::CheatSheet
-    );
     if was_typing && !is_window {
         return;
     }
-    ctx.input_mut(|i| i.consume_key(Modifiers::NONE, Key::Escape));
-    match closing {
-        Closing::Loading => commands.send(Command::CancelLoading),
-        Closing::Picking => commands.send(Command::View(ViewCommand::Pick(None))),
-        Closing::Marker => commands.send(Command::View(ViewCommand::Mark(None))),
-        Closing::Measuring => commands.send(Command::View(ViewCommand::Measure(None))),
-        Closing::Film => commands.send(Command::Toggle(Toggle::Film)),
-        Closing::Sweep => commands.send(Command::Toggle(Toggle::Sweep)),
-        Closing::Randomize => commands.send(Command::Toggle(Toggle::Randomize)),
-        Closing::Extremes => commands.send(Command::Toggle(Toggle::Extremes)),
-        Closing::Review => commands.send(Command::Toggle(Toggle::Review)),
-        Closing::Settings => commands.send(Command::Toggle(Toggle::Settings)),
-        Closing::CheatSheet => commands.send(Command::Toggle(Toggle::CheatSheet)),
-        Closing::Compare => panels.viewport.compare.close(),
-        Closing::Trade => commands.send(Command::Toggle(Toggle::Trade)),
-        Closing::Timing => commands.send(Command::Toggle(Toggle::Timing)),
-        Closing::Log => commands.send(Command::Toggle(Toggle::Log)),
-    }
+    app.ctx
+        .input_mut(|i| i.consume_key(Modifiers::NONE, Key::Escape));
+    close(app);
 }
 
-fn innermost(state: &State, panels: &Panels) -> Option<Closing> {
-    [
-        (state.session.scenes.is_loading(), Closing::Loading),
-        (state.picture.picking.is_some(), Closing::Picking),
-        (panels.film.is_open(), Closing::Film),
-        (panels.sweep.is_open(), Closing::Sweep),
-        (panels.randomize.is_open(), Closing::Randomize),
-        (panels.extremes.is_open(), Closing::Extremes),
-        (panels.review.is_open(), Closing::Review),
-        (state.open.settings, Closing::Settings),
-        (state.open.cheat_sheet, Closing::CheatSheet),
-        (state.picture.marker.is_some(), Closing::Marker),
-        (!state.measured_points().is_empty(), Closing::Measuring),
-        (panels.viewport.compare.is_open(), Closing::Compare),
-        (state.open.trade, Closing::Trade),
-        (state.open.timing, Closing::Timing),
-        (state.open.log, Closing::Log),
-    ]
-    .into_iter()
-    .find_map(|(is_open, closing)| is_open.then_some(closing))
+/// What is open innermost: whether it is a window, and how it is closed.
+fn innermost(app: &App) -> Option<(bool, fn(&mut App))> {
+    let App { state, panels, .. } = app;
+    let all: [(bool, bool, fn(&mut App)); 15] = [
+        (state.session.scenes.is_loading(), false, cancel_loading),
+        (state.picture.picking.is_some(), false, |app| {
+            app.state.picture.picking = None
+        }),
+        (panels.film.is_open(), true, toggle_film),
+        (panels.sweep.is_open(), true, |app| {
+            app.panels.sweep.toggle()
+        }),
+        (panels.randomize.is_open(), true, |app| {
+            app.panels.randomize.toggle()
+        }),
+        (panels.extremes.is_open(), true, |app| {
+            app.panels.extremes.toggle()
+        }),
+        (panels.review.is_open(), true, toggle_review),
+        (state.open.settings, true, |app| {
+            app.state.open.settings = false
+        }),
+        (state.open.cheat_sheet, true, |app| {
+            app.state.open.cheat_sheet = false
+        }),
+        (state.picture.marker.is_some(), false, |app| {
+            mark(&mut app.state, None)
+        }),
+        (!state.measured_points().is_empty(), false, |app| {
+            measure(&mut app.state, None)
+        }),
+        (panels.viewport.compare.is_open(), false, |app| {
+            app.panels.viewport.compare.close()
+        }),
+        (state.open.trade, false, |app| app.state.open.trade = false),
+        (state.open.timing, false, |app| {
+            app.state.open.timing = false
+        }),
+        (state.open.log, false, |app| app.state.open.log = false),
+    ];
+    all.into_iter()
+        .find(|(is_open, ..)| *is_open)
+        .map(|(_, is_window, close)| (is_window, close))
 }

@@ -60,7 +60,7 @@ pub fn run(options: Options) -> anyhow::Result<()> {
             Box<dyn eframe::App>,
             Box<dyn std::error::Error + Send + Sync>,
         > {
-            let mut app = App::with_loss_flag(cc, opened, flag)?;
+            let mut app = App::new_watching(cc, opened, flag)?;
             if losses > 0 {
                 app.notify(
                     Level::Warning,

@@ -10,7 +10,6 @@ use std::{
 use eframe::egui::{self, Ui, ViewportCommand};
 
 use super::{
-    apply,
     command::Commands,
     device::{self, Devices},
     escape::escape,
@@ -38,7 +37,7 @@ use crate::{
             state::FileState,
             watch::Watcher,
         },
-        jobs::{Jobs, finished::finish},
+        jobs::Jobs,
         panels::{Panels, log::toasts_ui},
         picture::{
             apply::verify_shown, precision::REST_S, screen::Screen, state::PictureState, tier_times,
@@ -80,9 +79,10 @@ const PICTURE_BESIDE_PRESETS: f32 = 400.0;
 
 /// The whole window.
 pub struct App {
-    pub(super) state: State,
-    pub(super) panels: Panels,
-    commands: Commands,
+    pub(in crate::app) ctx: egui::Context,
+    pub(in crate::app) state: State,
+    pub(in crate::app) panels: Panels,
+    pub(in crate::app) commands: Commands,
     /// What was typed while a dialog opened.
     typing: HeldTyping,
     /// A text field had the focus when the last frame ended.
@@ -105,14 +105,14 @@ impl App {
     /// # Errors
     /// If the window has no wgpu device.
     pub fn new(cc: &eframe::CreationContext<'_>, options: Options) -> anyhow::Result<Self> {
-        Self::with_loss_flag(cc, options, LossFlag::default())
+        Self::new_watching(cc, options, LossFlag::default())
     }
 
     /// The same; sets `loss` when the device is lost.
     ///
     /// # Errors
     /// If the window has no wgpu device.
-    pub fn with_loss_flag(
+    pub fn new_watching(
         cc: &eframe::CreationContext<'_>,
         options: Options,
         loss: LossFlag,
@@ -177,6 +177,7 @@ impl App {
             .effect_values()
             .map_or_else(Vec::new, |folder| preset_file::saved_values(&folder));
         Ok(Self {
+            ctx: ctx.clone(),
             panels,
             state: State {
                 files: FileState {
@@ -223,20 +224,10 @@ impl App {
         })
     }
 
-    /// Logs a message and shows it as a toast.
-    pub fn notify(&mut self, level: Level, text: impl Into<String>) {
-        self.state.notify(level, text);
-    }
-
-    /// Carries out the commands that were sent.
-    fn apply(&mut self, ctx: &egui::Context) {
-        apply::apply_all(ctx, &mut self.state, &mut self.panels, &self.commands);
-    }
-
     /// Shows a panel and carries out its commands.
     fn panel_ui(&mut self, ui: &mut Ui, panel: impl FnOnce(&mut Panels) -> &mut dyn Panel) {
         panel(&mut self.panels).ui(ui, &self.state, &self.commands);
-        self.apply(ui.ctx());
+        self.apply();
     }
 
     /// Saves the preset for a new start of the window, once, and closes it.
@@ -515,7 +506,7 @@ impl App {
             .panels
             .viewport
             .interact(ui, &self.state, &self.commands);
-        self.apply(ui.ctx());
+        self.apply();
         self.panels
             .viewport
             .draw(ui.ctx(), &mut self.state, &interaction);
@@ -527,7 +518,7 @@ impl App {
         self.panels
             .viewport
             .show(ui, &self.state, &self.commands, interaction.response.rect);
-        self.apply(ui.ctx());
+        self.apply();
     }
 }
 
@@ -539,12 +530,12 @@ impl eframe::App for App {
             });
         }
         while let Some(done) = self.state.jobs.next() {
-            finish(ctx, &mut self.state, &mut self.panels, &self.commands, done);
-            self.apply(ctx);
+            done(self);
+            self.apply();
         }
         #[cfg(target_arch = "wasm32")]
         super::page::send_waiting(&self.commands);
-        reload::take_changes(&mut self.state, &mut self.panels);
+        reload::take_changes(self);
         if self.state.picture.screen.is_lost() {
             self.rescue(ctx);
         }
@@ -576,18 +567,11 @@ impl eframe::App for App {
             self.panels.trade.pause();
         }
         input::dropped_files(&ctx, &self.state, &self.commands);
-        self.apply(&ctx);
-        escape(
-            &ctx,
-            &self.state,
-            &mut self.panels,
-            self.was_typing,
-            &self.commands,
-        );
-        self.apply(&ctx);
+        self.apply();
+        escape(self, self.was_typing);
         if !self.panels.has_dialog() && !self.panels.settings.takes_key() {
             input::shortcuts(&ctx, &self.state, &mut self.typing, &self.commands);
-            self.apply(&ctx);
+            self.apply();
         }
         let is_awaited =
             self.panels.takes_text() || (self.state.open.cheat_sheet && !self.panels.has_dialog());

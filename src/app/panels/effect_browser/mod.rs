@@ -24,11 +24,12 @@ use super::{
 use crate::{
     app::{
         editing::{session::Session, stack_drag::StackDrag},
-        files::{command::LibraryCommand, favorites::Starred},
+        files::favorites::Starred,
+        files::library,
         picture::effect_picture::EffectPicture,
         shell::{
             action::Action,
-            command::{Command, Commands, Edit},
+            command::{Commands, Edit},
             log::Level,
             state::State,
         },
@@ -314,11 +315,8 @@ impl EffectBrowser {
                     .tile
                     .context_menu(|ui| effect_menu::menu_ui(ui, state, commands, effect));
                 if responses.star.clicked() {
-                    commands.send(Command::Library(LibraryCommand::Star(
-                        Starred::Effect,
-                        effect.name.clone(),
-                        !tile.is_favorite,
-                    )));
+                    let (name, is_on) = (effect.name.clone(), !tile.is_favorite);
+                    commands.run(move |app| library::star(app, Starred::Effect, &name, is_on));
                 }
                 if responses.tile.clicked() {
                     self.has_added = true;
@@ -362,11 +360,11 @@ fn add(commands: &Commands, effect: &Arc<Effect>, rival: Option<&str>) {
             commands.edit(Edit::Replace(rival.into(), effect.clone()));
             let text =
                 format!("{name} replaced {rival}: both take the same slot of the rasterizer");
-            commands.send(Command::Notify(Level::Info, text));
+            commands.notify(Level::Info, text);
         }
         None => commands.edit(Edit::Enable(effect.clone())),
     }
-    commands.send(Command::Reveal(name.into()));
+    commands.reveal(name.into());
 }
 
 /// The open preset with nothing but `effect`: with the values of the built-in preset that shows it,

@@ -3,12 +3,8 @@
 use eframe::egui::{self, RichText, Ui};
 
 use crate::app::{
-    picture::{command::ViewCommand, overlay::Overlay},
-    shell::{
-        action::Action,
-        command::{Command, Commands},
-        state::State,
-    },
+    picture::overlay::Overlay,
+    shell::{action::Action, command::Commands, state::State},
     widgets::{icons::swatch, text::grouped, theme},
 };
 
@@ -29,7 +25,7 @@ pub fn overlays_ui(ui: &mut Ui, state: &State, commands: &Commands) {
                 .accessible_name(label)
                 .clicked()
             {
-                commands.send(Command::View(ViewCommand::ShowOverlay(overlay, on)));
+                commands.run(move |app| app.state.picture.overlays.set(overlay, on));
             }
             swatch(ui, overlay.color());
             if overlay == Overlay::Color {
@@ -83,6 +79,6 @@ fn gain_ui(ui: &mut Ui, mut gain: u8, commands: &Commands) {
         .on_hover_text("Factor of the color difference")
         .changed()
     {
-        commands.send(Command::View(ViewCommand::OverlayGain(gain)));
+        commands.run(move |app| app.state.picture.overlays.gain = gain);
     }
 }

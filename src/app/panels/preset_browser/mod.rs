@@ -15,7 +15,7 @@ use eframe::egui::{self, Align, Rect, RichText, Ui, vec2};
 use self::{
     arrange::{Filter, Item, arrange, tags},
     entry::{Shown, entry_size, entry_ui},
-    menu::{menu_ui, opening},
+    menu::{menu_ui, open_entry},
     pictures::Pictures,
     thumbnails::Size,
 };
@@ -23,17 +23,14 @@ use super::effect_browser::EffectBrowser;
 use crate::{
     app::{
         editing::session::FileId,
+        files::library,
         files::{
-            command::{LibraryCommand, Manner},
+            command::Manner,
             favorites::{Favorites, Starred},
             scene_loader::SceneKey,
         },
         settings::browsing::{Browsing, Layout, Tab},
-        shell::{
-            action::Action,
-            command::{Command, Commands},
-            state::State,
-        },
+        shell::{action::Action, command::Commands, state::State},
         widgets::{
             icons::{Icon, icon_button},
             panel::Panel,
@@ -209,13 +206,13 @@ impl PresetBrowser {
                 ui.set_min_height(theme::ROW);
                 ui.with_layout(egui::Layout::right_to_left(Align::Center), |ui| {
                     if icon_button(ui, Icon::Cross, "Keep it in the trash").clicked() {
-                        commands.send(Command::Library(LibraryCommand::ForgetDeleted));
+                        commands.run(|app| app.state.files.deleted.clear());
                     }
                     let undo = ui
                         .button("Undo")
                         .on_hover_text(format!("Put {} back", deleted.path.display()));
                     if undo.accessible_name("Undo the deletion").clicked() {
-                        commands.send(Command::Library(LibraryCommand::Restore));
+                        commands.run(|app| library::notify_outcome(app, library::restore));
                     }
                     ui.with_layout(egui::Layout::left_to_right(Align::Center), |ui| {
                         ui.add(
@@ -281,22 +278,16 @@ impl PresetBrowser {
                     .entry
                     .context_menu(|ui| menu_ui(ui, entry, commands));
                 if responses.star.clicked() {
-                    commands.send(Command::Library(LibraryCommand::Star(
-                        Starred::Preset,
-                        entry.id.clone(),
-                        !shown.is_favorite,
-                    )));
+                    let (name, is_on) = (entry.id.clone(), !shown.is_favorite);
+                    commands.run(move |app| library::star(app, Starred::Preset, &name, is_on));
                 }
                 if responses.entry.clicked() {
                     let with_scene = ui.input(|i| i.modifiers.shift || i.modifiers.alt);
-                    commands.send(opening(
-                        entry,
-                        if with_scene {
-                            Manner::WithScene
-                        } else {
-                            Manner::Look
-                        },
-                    ));
+                    let manner = match with_scene {
+                        true => Manner::WithScene,
+                        false => Manner::Look,
+                    };
+                    open_entry(entry, manner, commands);
                 }
             }
             ui.add_space(gap - ui.spacing().item_spacing.y);
