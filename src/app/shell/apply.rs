@@ -2,9 +2,10 @@
 
 use std::sync::Arc;
 
-use super::{command::Edit, log::Level, state::State, window::App};
+use super::{command::Edit, log::Level, state::State};
 use crate::{
     app::{
+        App,
         editing::apply::{report, set_text},
         files::{apply::request_open, command::Manner, library, scene_loader::SceneKey},
         picture::apply::draw_for_review,
@@ -23,7 +24,7 @@ impl App {
     }
 
     /// Runs the commands that were sent, in order.
-    pub(super) fn apply(&mut self) {
+    pub fn apply(&mut self) {
         for command in self.commands.take() {
             command(self);
         }

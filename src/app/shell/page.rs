@@ -13,15 +13,9 @@ use wasm_bindgen::{JsCast as _, JsValue, prelude::Closure};
 use wasm_bindgen_futures::JsFuture;
 use web_sys::{Blob, File, HtmlAnchorElement, HtmlInputElement, Response, Storage, Url};
 
-use super::{
-    command::Commands,
-    device::wgpu_setup,
-    input,
-    log::Level,
-    window::{App, Options},
-};
+use super::{command::Commands, device::wgpu_setup, log::Level};
 use crate::{
-    app::{files::take_along, settings::last_session::LastSession},
+    app::{App, Options, files::take_along, settings::last_session::LastSession, window::input},
     archive,
     host::disk,
     link, preset_file,

@@ -4,17 +4,17 @@ use std::path::PathBuf;
 
 use eframe::egui::{self, Event, KeyboardShortcut};
 
-use super::{
-    action::Action,
-    apply::paste,
-    command::{Commands, RowCommand},
-    log::Level,
-    state::State,
-    typing::HeldTyping,
-};
+use super::typing::HeldTyping;
 use crate::app::{
     files::{command::Purpose, system_dialog},
     settings::keymap::Keymap,
+    shell::{
+        action::Action,
+        apply::paste,
+        command::{Commands, RowCommand},
+        log::Level,
+        state::State,
+    },
 };
 
 /// Sends the actions whose shortcuts were pressed, in the order of the keys. Shortcuts without Ctrl
@@ -133,7 +133,10 @@ pub fn open_given(mut dropped: Vec<PathBuf>, commands: &Commands) {
 
 /// Takes files that a page was given, which lie in its memory now.
 #[cfg(target_arch = "wasm32")]
-pub fn take_given(app: &mut crate::app::App, given: Result<super::page::Given, String>) {
+pub fn take_given(
+    app: &mut crate::app::App,
+    given: Result<crate::app::shell::page::Given, String>,
+) {
     match given {
         Ok(given) if given.is_export => crate::app::files::take_along::import(app),
         Ok(given) => open_given(given.paths, &app.commands),

@@ -3,13 +3,11 @@
 
 use eframe::egui::{self, Key, Modifiers};
 
-use super::{
-    apply::{toggle_film, toggle_review},
-    window::App,
-};
+use super::app::App;
 use crate::app::{
     files::open::cancel_loading,
     picture::apply::{mark, measure},
+    shell::apply::{toggle_film, toggle_review},
 };
 
 /// Closes the innermost thing if Escape was pressed. `was_typing`: a text field had the focus in the

@@ -3,11 +3,13 @@
 
 use eframe::egui;
 
-use super::{
-    state::State,
-    ui_frames::{Noted, UiFrames},
+use crate::{
+    app::shell::{
+        state::State,
+        ui_frames::{Noted, UiFrames},
+    },
+    measure::timing::percentile,
 };
-use crate::measure::timing::percentile;
 
 /// A note covers at least this much time, seconds.
 const SPAN_S: f64 = 1.0;

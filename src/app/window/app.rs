@@ -10,18 +10,8 @@ use std::{
 use eframe::egui::{self, Ui, ViewportCommand};
 
 use super::{
-    command::Commands,
-    device::{self, Devices},
-    escape::escape,
-    fold::Fold,
-    frame_notes::FrameNotes,
-    input,
-    log::{Level, Log},
-    loss::LossFlag,
-    pointer_frames::PointerFrames,
-    state::{Clipboard, Closing, State},
-    typing::HeldTyping,
-    ui_frames::UiFrames,
+    escape::escape, fold::Fold, frame_notes::FrameNotes, input, loss::LossFlag,
+    pointer_frames::PointerFrames, typing::HeldTyping,
 };
 use crate::{
     app::{
@@ -43,6 +33,13 @@ use crate::{
             apply::verify_shown, precision::REST_S, screen::Screen, state::PictureState, tier_times,
         },
         settings::{keeper::Keeper, recents::Recents},
+        shell::{
+            command::Commands,
+            device::{self, Devices},
+            log::{Level, Log},
+            state::{Clipboard, Closing, State},
+            ui_frames::UiFrames,
+        },
         widgets::{panel::Panel, theme},
     },
     gpu::device::AdapterChoice,
@@ -66,6 +63,8 @@ pub struct Options {
     pub config: Option<PathBuf>,
     /// The file that messages of the log are appended to.
     pub log: Option<Arc<std::fs::File>>,
+    /// Set when the device is lost.
+    pub loss: LossFlag,
 }
 
 /// Most seconds between two frames of the window while a preset plays.
@@ -105,18 +104,6 @@ impl App {
     /// # Errors
     /// If the window has no wgpu device.
     pub fn new(cc: &eframe::CreationContext<'_>, options: Options) -> anyhow::Result<Self> {
-        Self::new_watching(cc, options, LossFlag::default())
-    }
-
-    /// The same; sets `loss` when the device is lost.
-    ///
-    /// # Errors
-    /// If the window has no wgpu device.
-    pub fn new_watching(
-        cc: &eframe::CreationContext<'_>,
-        options: Options,
-        loss: LossFlag,
-    ) -> anyhow::Result<Self> {
         host::shaders::choose(None);
         let ctx = &cc.egui_ctx;
         theme::apply(ctx);
@@ -216,7 +203,7 @@ impl App {
             was_typing: false,
             keeper,
             looked_for: (Recents::default(), false),
-            loss,
+            loss: options.loss,
             played_at_s: None,
             notes: FrameNotes::default(),
             fold: Fold::default(),
@@ -251,7 +238,7 @@ impl App {
             } = &self.state;
             self.keeper
                 .close(settings, (session, picture.review.kept()), true);
-            super::page::stop("the device was lost");
+            crate::app::shell::page::stop("the device was lost");
         }
         self.state.closing.may_quit = true;
         ctx.send_viewport_cmd(ViewportCommand::Close);
@@ -534,7 +521,7 @@ impl eframe::App for App {
             self.apply();
         }
         #[cfg(target_arch = "wasm32")]
-        super::page::send_waiting(&self.commands);
+        crate::app::shell::page::send_waiting(&self.commands);
         reload::take_changes(self);
         if self.state.picture.screen.is_lost() {
             self.rescue(ctx);
