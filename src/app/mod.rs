@@ -6,8 +6,8 @@
 //! the panel was shown. Slow work runs in `jobs` and ends with such a closure; the window never waits
 //! for a thread or a device.
 //!
-//! A folder names those before it in the list below; `App` and `Commands`, which everything changes
-//! and sends to, are the exception.
+//! The folders stand in order: panels and the window name only those before them. Below, `shell` is
+//! still named upward, for messages, `State` and `Commands`.
 
 mod widgets;
 
