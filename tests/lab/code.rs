@@ -7,7 +7,7 @@ use rasterlab::preset_file::Folders;
 
 use crate::{
     harness::*,
-    live::{INK, wait_for, write},
+    live::{INK, write},
 };
 
 const PRESET: &str = "schema = 2\n[scene]\nbuiltin = \"teapot\"\n[effects.ink]\n";

@@ -409,6 +409,38 @@ pub fn click(lab: &mut Lab, role: Role, label: &str) {
     settle(lab);
 }
 
+/// Chooses `entry` of the menu of this name.
+pub fn choose(lab: &mut Lab, menu: &str, entry: &str) {
+    click(lab, Role::ComboBox, menu);
+    click(lab, Role::Button, entry);
+}
+
+pub fn type_text(lab: &mut Lab, text: &str) {
+    lab.event(Event::Text(text.into()));
+    lab.run_steps(3);
+}
+
+pub fn paste(lab: &mut Lab, text: &str) {
+    lab.event(Event::Paste(text.into()));
+    lab.run_steps(3);
+    settle(lab);
+}
+
+/// Steps until `reached`, and then until everything is at rest.
+pub fn wait_for(lab: &mut Lab, what: &str, reached: impl Fn(&Lab) -> bool) {
+    let patience = Instant::now() + Duration::from_secs(60);
+    while !reached(lab) {
+        lab.step();
+        assert!(
+            Instant::now() < patience,
+            "{what}: it did not happen\n{}",
+            lab.state().log_text()
+        );
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    settle(lab);
+}
+
 /// Adds an effect with the dialog *Add effect*, without waiting for its picture.
 pub fn begin_adding(lab: &mut Lab, effect: &str) {
     lab.key_press_modifiers(Modifiers::SHIFT, Key::A);

@@ -26,21 +26,6 @@ pub fn write(path: &Path, text: &str) {
     std::fs::write(path, text).expect("a file");
 }
 
-/// Steps until `reached`, and then until everything is at rest.
-pub fn wait_for(lab: &mut Lab, what: &str, reached: impl Fn(&Lab) -> bool) {
-    let patience = Instant::now() + Duration::from_secs(60);
-    while !reached(lab) {
-        lab.step();
-        assert!(
-            Instant::now() < patience,
-            "{what}: it did not happen\n{}",
-            lab.state().log_text()
-        );
-        std::thread::sleep(Duration::from_millis(5));
-    }
-    settle(lab);
-}
-
 fn count(lab: &Lab, text: &str) -> usize {
     lab.state()
         .log_text()

@@ -6,7 +6,7 @@ use egui_kittest::kittest::{NodeT as _, Queryable as _};
 
 use crate::{
     harness::*,
-    live::{INK, wait_for, write},
+    live::{INK, write},
 };
 
 const PRESET: &str =

@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use eframe::egui::{Event, Role};
+use eframe::egui::Role;
 use egui_kittest::kittest::Queryable as _;
 use rasterlab::{
     preset::SceneSource,
@@ -21,12 +21,6 @@ fn shows(lab: &Lab, model: &Path) -> bool {
 
 fn is_asked(lab: &Lab) -> bool {
     lab.query_by_label("Open its model too?").is_some()
-}
-
-fn paste(lab: &mut Lab, text: &str) {
-    lab.event(Event::Paste(text.into()));
-    lab.run_steps(3);
-    settle(lab);
 }
 
 /// A preset of the model in `models`, and a picture of it in another folder.

@@ -4,7 +4,7 @@
 use eframe::egui::{Key, Modifiers, Role};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 
-use crate::{harness::*, live::wait_for};
+use crate::harness::*;
 
 fn label_of(lab: &Lab, text: &str) -> Option<String> {
     lab.query_all_by_label_contains(text)

@@ -9,10 +9,7 @@ use rasterlab::{
     preset_file::{self, Folders, golden_paths},
 };
 
-use crate::{
-    harness::*,
-    live::{wait_for, write},
-};
+use crate::{harness::*, live::write};
 
 const PRESET: &str = "schema = 2\nname = \"Knot\"\n[scene]\nbuiltin = \"knot?tess=3\"\n[effects.lambert]\n[output]\nsize = [64, 48]\n[test]\n";
 

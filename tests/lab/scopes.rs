@@ -19,11 +19,6 @@ fn on(lab: &Lab, effect: &str) -> String {
         .to_string()
 }
 
-fn type_text(lab: &mut Lab, text: &str) {
-    lab.event(egui::Event::Text(text.into()));
-    lab.run_steps(3);
-}
-
 #[test]
 fn boxes_of_the_picker_set_the_scope_and_undo_takes_each_back() {
     draw_pictures();

@@ -299,6 +299,8 @@ fn broken_settings_are_one_line_of_the_log_and_the_window_opens() {
     );
     assert_eq!(lab.ctx.theme(), Theme::Dark);
     drop(lab);
+    let aside = std::fs::read_to_string(config.path().join("settings.toml.broken"));
+    assert_eq!(aside.expect("it is kept"), "theme = = \"light\"\n");
     let Some(lab) = lab_at(config.path(), None) else {
         return;
     };

@@ -6,11 +6,6 @@ use egui_kittest::kittest::Queryable as _;
 
 use crate::harness::*;
 
-fn choose(lab: &mut Lab, menu: &str, entry: &str) {
-    click(lab, Role::ComboBox, menu);
-    click(lab, Role::Button, entry);
-}
-
 #[test]
 fn a_click_on_a_picture_of_the_sheet_takes_its_values_in_one_step() {
     draw_pictures();

@@ -17,7 +17,7 @@ use super::{
         take_effect_picture, take_golden, take_link, take_precision, take_thumbnail,
         take_thumbnail_on, take_trade,
     },
-    landed, worker,
+    land_look, worker,
     worker::{Question, Task, Wish},
 };
 use crate::{
@@ -114,7 +114,7 @@ impl Jobs {
         size: [u32; 2],
     ) {
         self.spawn_idle("thumbnail", async move || {
-            let image = match landed(&look, &own, &scene) {
+            let image = match land_look(&look, &own, &scene) {
                 Some(landed) => picture(&landed, size).await,
                 None => None,
             };

@@ -13,7 +13,7 @@ use web_time::Instant;
 
 use crate::{
     app::{
-        jobs::{computing::Computing, memory},
+        jobs::{Computing, memory},
         shell::{command::Commands, log::Level, state::State},
         trade::pace::about,
         widgets::{panel::Panel, theme},

@@ -24,7 +24,7 @@ use crate::{
 };
 
 /// Width of the table, points.
-const TABLE_WIDTH: f32 = 372.0;
+const TABLE_WIDTH: f32 = 430.0;
 
 /// The plot reaches this much above the slowest frame that compiled nothing.
 const HEADROOM: f64 = 1.15;

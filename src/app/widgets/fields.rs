@@ -103,7 +103,7 @@ impl Row {
     fn new(path: String, param: Param, modified: bool, edited: Edited) -> Self {
         Self {
             path,
-            label: label(&param.name, &param.unit),
+            label: label(&param),
             param,
             modified,
             keying: None,
@@ -136,7 +136,8 @@ impl Row {
 
 /// The name without its unit, as the unit is shown after the number: `radius_m` in meters is
 /// `radius`.
-fn label(name: &str, unit: &str) -> String {
+/// The name of a parameter in words, without the unit, which its value has.
+pub fn label(Param { name, unit, .. }: &Param) -> String {
     let stem = [
         ("m", "_m"),
         ("°", "_deg"),
@@ -146,7 +147,7 @@ fn label(name: &str, unit: &str) -> String {
     .iter()
     .find(|(u, _)| *u == unit);
     stem.and_then(|(_, suffix)| name.strip_suffix(suffix))
-        .unwrap_or(name)
+        .unwrap_or(name.as_str())
         .replace('_', " ")
 }
 
@@ -279,13 +280,13 @@ fn label_ui(ui: &mut Ui, row: &Row, value: &Value, rect: Rect) -> Option<RowComm
             "{}   {}{}",
             row.path,
             row.param.allowed(),
-            spaced(&row.param.unit)
+            spaced_unit(&row.param.unit)
         )));
     });
     command
 }
 
-fn spaced(unit: &str) -> String {
+fn spaced_unit(unit: &str) -> String {
     match unit {
         "" => String::new(),
         unit => format!(" {unit}"),
@@ -394,7 +395,7 @@ fn number_ui(ui: &mut Ui, commands: &Commands, row: &Row, value: f64) -> Shown {
         Some(_) => NUMBER_WIDTH,
         None => ui.available_width().min(120.0),
     };
-    let unit = spaced(&row.param.unit);
+    let unit = spaced_unit(&row.param.unit);
     let speed = if whole { speed.max(0.05) } else { speed };
     let field = NumberField {
         range: [low, high],
@@ -426,7 +427,7 @@ fn say(commands: &Commands, row: &Row, said: Option<String>) {
             "{} takes {}{}: {said}.",
             row.path,
             row.param.allowed(),
-            spaced(&row.param.unit)
+            spaced_unit(&row.param.unit)
         );
         commands.notify(Level::Warning, text);
     }

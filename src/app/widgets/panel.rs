@@ -39,7 +39,7 @@ pub fn window<'a>(title: &'a str, is_open: &'a mut bool) -> Window<'a> {
 }
 
 /// The same in the middle of all.
-pub fn centered<'a>(ctx: &Context, title: &'a str, is_open: &'a mut bool) -> Window<'a> {
+pub fn centered_window<'a>(ctx: &Context, title: &'a str, is_open: &'a mut bool) -> Window<'a> {
     window(title, is_open)
         .pivot(Align2::CENTER_CENTER)
         .default_pos(ctx.content_rect().center())

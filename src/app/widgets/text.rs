@@ -1,7 +1,7 @@
 //! Numbers as people read them.
 
 /// `1234567` as `1,234,567`.
-pub fn grouped(number: u64) -> String {
+pub fn group_digits(number: u64) -> String {
     let digits = number.to_string();
     let mut text = String::new();
     for (index, digit) in digits.chars().enumerate() {
@@ -64,7 +64,7 @@ mod tests {
     #[test]
     fn digits_are_grouped_by_three() {
         assert_eq!(
-            [grouped(7), grouped(1000), grouped(1_234_567)],
+            [group_digits(7), group_digits(1000), group_digits(1_234_567)],
             ["7", "1,000", "1,234,567"]
         );
     }

@@ -55,7 +55,7 @@ pub struct Timeline {
 }
 
 /// Tracks of the enabled effects.
-fn animated(session: &Session) -> Vec<&Track> {
+fn animated_tracks(session: &Session) -> Vec<&Track> {
     let preset = session.preset();
     preset
         .animation
@@ -68,7 +68,7 @@ fn animated(session: &Session) -> Vec<&Track> {
 impl Timeline {
     /// Height of the whole panel, points.
     pub fn height(&self, session: &Session) -> f32 {
-        let heights = animated(session)
+        let heights = animated_tracks(session)
             .into_iter()
             .map(|track| tracks::height(self.open.contains(&track.path())))
             .sum::<f32>();
@@ -155,7 +155,7 @@ impl Panel for Timeline {
                 });
             });
         });
-        let tracks = animated(session);
+        let tracks = animated_tracks(session);
         if self.span_s.is_none() || !ui.input(|i| i.pointer.any_down()) {
             self.span_s = Some(span::extent(session.preset().clock.range_s, &tracks));
         }

@@ -157,7 +157,7 @@ impl TradePanel {
 
     /// Takes the points of the measurement that has ended. One that was canceled keeps those that
     /// were timed. Returns the whole message of an error.
-    pub fn arrived(&mut self, points: Result<Vec<Point>, String>) -> Option<String> {
+    pub fn take_points(&mut self, points: Result<Vec<Point>, String>) -> Option<String> {
         let Running {
             request,
             progress,

@@ -6,7 +6,7 @@ use super::{
     compare::{Compare, Mode},
     compare_bar::{bar_ui, labels_ui},
     compare_plates::plates_ui,
-    layout::fitted,
+    layout::fit_aspect,
     overlays::OverlayPainter,
 };
 use crate::app::{
@@ -45,7 +45,7 @@ pub fn compare_ui(
                 .and_then(|a| a.difference(&state.picture.screen, compare.gain)),
             _ => Some(blit.clone()),
         };
-        let target = fitted(
+        let target = fit_aspect(
             if mode == Mode::SideBySide {
                 half_a
             } else {

@@ -5,7 +5,7 @@ use eframe::egui::{self, Align2, Color32, FontId, Painter, Pos2, Rect, Response,
 use glam::{DMat4, DVec2, DVec3, DVec4};
 
 use super::{
-    layout::{fitted, whole_size},
+    layout::{fit_aspect, whole_size},
     points::seen_at,
 };
 use crate::{
@@ -224,7 +224,7 @@ pub fn take_click(ui: &Ui, response: &Response, side: Rect, state: &State, comma
         return;
     };
     let size = whole_size(response.rect);
-    let at = fitted(side, size);
+    let at = fit_aspect(side, size);
     if !at.contains(pointer) {
         return;
     }
