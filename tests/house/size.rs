@@ -8,7 +8,8 @@ const RUST: &[(&str, u64)] = &[
     ("crates/bench", 56_000),
     ("crates/evaluator", 146_500),
     ("crates/files", 472_500),
-    ("crates/gpu", 421_000),
+    // A tree of dot runs: the crate rstar and three packages below it went.
+    ("crates/gpu", 421_500),
     ("crates/kernels", 244_500),
     // The types of the crate gltf, and what checks them: the reader's own tables went for it.
     ("crates/model", 1_417_500),
@@ -31,7 +32,7 @@ const RUST: &[(&str, u64)] = &[
 const SHADERS: (usize, u64) = (178, 447_000);
 
 /// Packages in `Cargo.lock`, of all platforms.
-const PACKAGES: usize = 453;
+const PACKAGES: usize = 440;
 
 /// Words of the pages that people read.
 const WORDS: usize = 37_900;

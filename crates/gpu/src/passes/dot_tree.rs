@@ -2,7 +2,6 @@
 //! never one too few.
 
 use glam::{DMat4, DVec3, DVec4};
-use rstar::{AABB, RTree, RTreeObject, SelectionFunction};
 
 use crate::{
     effects::dots::Dots,
@@ -21,42 +20,53 @@ const ROUNDING: f64 = 1e-5;
 /// Rounding of its 1/w, in steps of the bits.
 const STEPS: u32 = 256;
 
-/// A stretch with its box.
-struct Leaf {
-    dot_run: u32,
-    corners: [[f64; 3]; 2],
+/// A box around dot runs: a few, or those of the nodes behind it up to `end`.
+struct Node {
+    corners: [DVec3; 2],
+    dot_runs: Vec<u32>,
+    end: usize,
 }
 
-impl RTreeObject for Leaf {
-    type Envelope = AABB<[f64; 3]>;
-
-    fn envelope(&self) -> Self::Envelope {
-        AABB::from_corners(self.corners[0], self.corners[1])
+/// Adds a node, and those of its halves.
+fn grow(nodes: &mut Vec<Node>, ends: &[[DVec3; 2]], dot_runs: &mut [u32]) {
+    let of = |dot_run: &u32| ends[*dot_run as usize];
+    let none = [DVec3::INFINITY, DVec3::NEG_INFINITY];
+    let corners = dot_runs
+        .iter()
+        .flat_map(of)
+        .fold(none, |[low, high], at| [low.min(at), high.max(at)]);
+    let (at, middle) = (nodes.len(), dot_runs.len() / 2);
+    let few = if middle < 4 {
+        dot_runs.to_vec()
+    } else {
+        Vec::new()
+    };
+    nodes.push(Node {
+        corners,
+        dot_runs: few,
+        end: 0,
+    });
+    if middle >= 4 {
+        let axis = (corners[1] - corners[0]).max_position();
+        let place = |dot_run: &u32| of(dot_run)[0][axis];
+        dot_runs.select_nth_unstable_by(middle, |a, b| place(a).total_cmp(&place(b)));
+        let (left, right) = dot_runs.split_at_mut(middle);
+        grow(nodes, ends, left);
+        grow(nodes, ends, right);
     }
+    nodes[at].end = nodes.len();
 }
 
 /// A tree of dot runs in space, which the CPU asks for the dots that may show. It keeps a few too
 /// many, never one too few.
 pub struct DotTree {
-    tree: RTree<Leaf>,
+    nodes: Vec<Node>,
     /// First and last dot of every stretch, in the scene before it is spun.
     ends: Vec<[DVec3; 2]>,
 }
 
 /// The planes of a view in the scene, positive inside.
 struct Planes([DVec4; 6]);
-
-impl SelectionFunction<Leaf> for Planes {
-    fn should_unpack_parent(&self, envelope: &AABB<[f64; 3]>) -> bool {
-        let (low, high) = (DVec3::from(envelope.lower()), DVec3::from(envelope.upper()));
-        self.0.iter().all(|plane| {
-            // The corner that lies farthest inside.
-            let normal = plane.truncate();
-            let corner = DVec3::select(normal.cmpge(DVec3::ZERO), high, low);
-            normal.dot(corner) + plane.w >= -error_bound(plane, corner)
-        })
-    }
-}
 
 /// How far rounding may carry the distance of a point from a plane.
 fn error_bound(plane: &DVec4, point: DVec3) -> f64 {
@@ -79,11 +89,14 @@ impl Planes {
         ])
     }
 
-    /// May a point lie inside?
-    fn may_hold(&self, point: DVec3) -> bool {
-        self.0
-            .iter()
-            .all(|plane| plane.truncate().dot(point) + plane.w >= -error_bound(plane, point))
+    /// May a point between these corners lie inside?
+    fn may_hold(&self, [low, high]: [DVec3; 2]) -> bool {
+        self.0.iter().all(|plane| {
+            // The corner that lies farthest inside.
+            let normal = plane.truncate();
+            let corner = DVec3::select(normal.cmpge(DVec3::ZERO), high, low);
+            normal.dot(corner) + plane.w >= -error_bound(plane, corner)
+        })
     }
 }
 
@@ -114,14 +127,10 @@ impl DotTree {
             [at(0), at(dot_run.count - 1)]
         };
         let ends: Vec<[DVec3; 2]> = dot_runs.iter().map(ends_of).collect();
-        let leaf = |(i, [a, b]): (usize, &[DVec3; 2])| Leaf {
-            dot_run: i as u32,
-            corners: [a.min(*b).to_array(), a.max(*b).to_array()],
-        };
-        Self {
-            tree: RTree::bulk_load(ends.iter().enumerate().map(leaf).collect()),
-            ends,
-        }
+        let mut nodes = Vec::new();
+        let mut order: Vec<u32> = (0..ends.len() as u32).collect();
+        grow(&mut nodes, &ends, &mut order);
+        Self { nodes, ends }
     }
 
     /// DotRun and place of every dot that may show.
@@ -142,18 +151,24 @@ impl DotTree {
             (halved >> 23) as u32
         };
         let mut chosen = Vec::new();
-        for leaf in self.tree.locate_with_selection_function(Planes(planes.0)) {
-            let (dot_run, [a, b]) = (
-                &dot_runs[leaf.dot_run as usize],
-                self.ends[leaf.dot_run as usize],
-            );
-            let stride = 1u32 << level(a).min(level(b));
-            let first = dot_run.first.next_multiple_of(stride) - dot_run.first;
-            for place in (first..dot_run.count).step_by(stride as usize) {
-                let at = a + (b - a) * (f64::from(place) / f64::from(dot_run.count.max(2) - 1));
-                let number = dot_run.first + place;
-                if (number == 0 || number.trailing_zeros() >= level(at)) && planes.may_hold(at) {
-                    chosen.push([leaf.dot_run, place]);
+        let mut at = 0;
+        while let Some(node) = self.nodes.get(at) {
+            if !planes.may_hold(node.corners) {
+                at = node.end;
+                continue;
+            }
+            at += 1;
+            for &number in &node.dot_runs {
+                let (dot_run, [a, b]) = (&dot_runs[number as usize], self.ends[number as usize]);
+                let stride = 1u32 << level(a).min(level(b));
+                let first = dot_run.first.next_multiple_of(stride) - dot_run.first;
+                for place in (first..dot_run.count).step_by(stride as usize) {
+                    let at = a + (b - a) * (f64::from(place) / f64::from(dot_run.count.max(2) - 1));
+                    let dot = dot_run.first + place;
+                    if (dot == 0 || dot.trailing_zeros() >= level(at)) && planes.may_hold([at, at])
+                    {
+                        chosen.push([number, place]);
+                    }
                 }
             }
         }
