@@ -4,19 +4,17 @@ use std::path::PathBuf;
 
 use eframe::egui::{self, Event, KeyboardShortcut};
 
-use super::{
-    action::Action,
-    command::{Command, Commands, RowCommand},
-    log::Level,
-    state::State,
-    typing::HeldTyping,
-};
+use super::typing::HeldTyping;
 use crate::app::{
-    files::{
-        command::{FileCommand, Purpose},
-        system_dialog,
-    },
+    files::{command::Purpose, system_dialog},
     settings::keymap::Keymap,
+    shell::{
+        action::Action,
+        apply::paste,
+        command::{Commands, RowCommand},
+        log::Level,
+        state::State,
+    },
 };
 
 /// Sends the actions whose shortcuts were pressed, in the order of the keys. Shortcuts without Ctrl
@@ -82,10 +80,10 @@ fn clipboard(ctx: &egui::Context, state: &State, commands: &Commands) {
     for event in ctx.input(|i| i.events.clone()) {
         match event {
             Event::Copy => match &state.clipboard.hovered_row {
-                Some((_, value)) => commands.send(Command::Row(RowCommand::Copy(value.clone()))),
+                Some((_, value)) => commands.row(RowCommand::Copy(value.clone())),
                 None => commands.perform(Action::CopyPreset),
             },
-            Event::Paste(text) => commands.send(Command::PasteText(text)),
+            Event::Paste(text) => commands.run(move |app| paste(app, &text)),
             _ => {}
         }
     }
@@ -122,15 +120,26 @@ pub fn open_given(mut dropped: Vec<PathBuf>, commands: &Commands) {
     };
     dropped.sort_by_key(rank);
     let Some(first) = dropped.first() else { return };
-    commands.send(Command::File(FileCommand::Open(
-        first.to_string_lossy().into_owned(),
-    )));
+    commands.open(first.to_string_lossy().into_owned());
     if dropped.len() > 1 {
         let name = first.file_name().unwrap_or_default().to_string_lossy();
         let text = format!(
             "{} files were dropped. One is opened at a time: {name}",
             dropped.len()
         );
-        commands.send(Command::Notify(Level::Info, text));
+        commands.notify(Level::Info, text);
+    }
+}
+
+/// Takes files that a page was given, which lie in its memory now.
+#[cfg(target_arch = "wasm32")]
+pub fn take_given(
+    app: &mut crate::app::App,
+    given: Result<crate::app::shell::page::Given, String>,
+) {
+    match given {
+        Ok(given) if given.is_export => crate::app::files::take_along::import(app),
+        Ok(given) => open_given(given.paths, &app.commands),
+        Err(error) => app.notify(Level::Error, error),
     }
 }
