@@ -54,9 +54,6 @@ pub struct Cases {
 
 impl Cases {
     /// Writes the files into a folder of their own, which goes with this.
-    ///
-    /// # Errors
-    /// The folder cannot be written.
     pub fn unpack() -> io::Result<Self> {
         let folder = TempDir::with_prefix("rasterlab-extremes")?;
         for file in BUILTIN_DIR

@@ -132,9 +132,6 @@ fn named(text: &str, name: &str, stem: &str) -> String {
 
 /// Writes a copy of a preset, as its file has it, into `folder`, under a name that is free. It has
 /// no golden. Returns its path.
-///
-/// # Errors
-/// The file cannot be read, or the copy cannot be written.
 pub fn duplicate(source: &PresetFile, folder: &Path) -> Result<PathBuf, PresetError> {
     let source = match &source.path {
         Some(path) => &load_with(path, &source.effects)?,

@@ -7,7 +7,7 @@ pub mod animation;
 mod bookmark;
 mod fit;
 mod fitted;
-mod golden_test;
+mod golden_budget;
 mod landing;
 mod missing_parts;
 mod output;
@@ -43,7 +43,7 @@ use crate::{
 pub use animation::{Animation, Track};
 pub use bookmark::{Bookmark, MAX_BOOKMARK_CHARS, MAX_BOOKMARKS, check_bookmark_name};
 pub use fit::{Fit, LengthUnit};
-pub use golden_test::GoldenTest;
+pub use golden_budget::GoldenTest;
 pub use output::{NAMED_SIZES, Output, named_size};
 
 pub use crate::accuracy::{AccuracyRequest, PinnedOptions, Tier, Visibility};
