@@ -78,22 +78,23 @@ def probes(root, fuzz_count, fuzz_seed, leave_out=(), cases=()):
 
 
 def commands(relevant, stem, seconds):
-    """Groups of probes, each one command, for a mutant of the file `stem`: of every step first the cheapest probe, one that is named
-    after the file if there is one, then the others."""
+    """Groups of probes, each one command, for a mutant of the file `stem`: first those that are named after the file, then the cheapest
+    of every step, then the others; what takes less time comes first."""
 
-    def rank(probe):
-        return (stem not in probe.name, seconds.get(probe.name, 0.0))
+    def cost(probe):
+        return seconds.get(probe.name, 0.0)
 
-    groups = []
+    ranked = []
     for step in STEPS:
-        of_step = sorted((probe for probe in relevant if probe.step == step), key=rank)
         by_head = {}
-        for probe in of_step:
+        for probe in sorted((probe for probe in relevant if probe.step == step), key=cost):
             by_head.setdefault(tuple(probe.head), []).append(probe)
         for same in by_head.values():
-            first = 1 if len(same) > 2 else len(same)
-            groups += [group for group in (same[:first], same[first : first + 6], same[first + 6 :]) if group]
-    return groups
+            named = [probe for probe in same if any(stem in os.path.basename(word) for word in probe.inputs)]
+            others = [probe for probe in same if probe not in named]
+            ranked += enumerate((named[:2], named[2:], others[:2], others[2:10], others[10:]))
+    ranked = [(rank, sum(map(cost, group)), group) for rank, group in ranked if group]
+    return [group for _, _, group in sorted(ranked, key=lambda one: one[:2])]
 
 
 def merged(group):
