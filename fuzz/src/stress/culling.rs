@@ -303,7 +303,7 @@ impl BorderView {
 
 /// Draws with and without culling, which must be the same; returns how many meshes were culled and
 /// how many pixels were drawn.
-fn compared(
+fn compare_positions(
     context: &mut CaseContext,
     scene: &Arc<Scene>,
     view: &View,
@@ -369,7 +369,7 @@ fn slivers_at_the_border(context: &mut CaseContext) -> Result<(), EarlyEnd> {
         };
         let scene = border.slivers(&mut rng);
         let view = border.view(&scene);
-        let (culled, pixels) = compared(
+        let (culled, pixels) = compare_positions(
             context,
             &scene,
             &view,
@@ -388,7 +388,8 @@ fn slivers_at_the_border(context: &mut CaseContext) -> Result<(), EarlyEnd> {
         };
         let scene = border.spikes(&mut rng);
         let view = border.view(&scene);
-        let (_, pixels) = compared(context, &scene, &view, &format!("spikes, {projection:?}"))?;
+        let (_, pixels) =
+            compare_positions(context, &scene, &view, &format!("spikes, {projection:?}"))?;
         check!(pixels > 500, "spikes, {projection:?}: {pixels} pixels");
     }
     check!(

@@ -20,7 +20,8 @@ use crate::{
     frame::SnappedVertex,
     layout::{
         BufferId,
-        frame_layout::{DOT_GROUP, DotCounts, folded},
+        dispatch::{DOT_GROUP, fold_groups},
+        frame_layout::DotCounts,
         records::{DotFrame, DotRunRecord, VertexRecord},
     },
     math::rounded_columns,
@@ -269,7 +270,7 @@ impl DotStore {
             });
             pass.set_pipeline(&pipeline.pipeline);
             pass.set_bind_group(0, &group, &[]);
-            let [x, y] = folded(probed.div_ceil(DOT_GROUP));
+            let [x, y] = fold_groups(probed.div_ceil(DOT_GROUP));
             pass.dispatch_workgroups(x, y, 1);
             drop(pass);
             gpu.queue.submit([encoder.finish()]);
