@@ -28,6 +28,9 @@ CASES = [
 # Examples that take the oracle half a minute of a CPU, and whose library files others read too.
 SLOW_EXAMPLES = ["strata"]
 
+# Most probes of one command, so that a mutant which one of them notices does not wait for all.
+REST = 20
+
 # `fuzz` in parts of this many presets, so that one part suffices to detect most.
 FUZZ_PART = 10
 
@@ -92,7 +95,8 @@ def commands(relevant, stem, seconds):
         for same in by_head.values():
             named = [probe for probe in same if any(stem in os.path.basename(word) for word in probe.inputs)]
             others = [probe for probe in same if probe not in named]
-            ranked += enumerate((named[:2], named[2:], others[:2], others[2:10], others[10:]))
+            rest = [others[begin : begin + REST] for begin in range(10, len(others), REST)]
+            ranked += enumerate((named[:2], named[2:], others[:2], others[2:10], *rest))
     ranked = [(rank, sum(map(cost, group)), group) for rank, group in ranked if group]
     return [group for _, _, group in sorted(ranked, key=lambda one: one[:2])]
 
