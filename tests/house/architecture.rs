@@ -64,7 +64,7 @@ const LONGEST: usize = 640;
 const LONG_FOR_A_REASON: &[(&str, &str)] = &[
     (
         "crates/gpu/src/layout/frame_layout.rs",
-        "the only place that computes sizes, offsets and dispatches of a frame",
+        "the only place that computes sizes and offsets of a frame",
     ),
     (
         "crates/kernels/src/shader/link.rs",
