@@ -222,7 +222,7 @@ fn locks_ui(ui: &mut Ui, state: &State, commands: &Commands, enabled: &EnabledEf
                 .get(&effect.name, &field.name)
                 .is_some();
             let mut varies = !seeds.is_locked(effect, field) && !is_animated;
-            let name = RichText::new(label(field)).size(12.0);
+            let name = RichText::new(label(&field.name, &field.unit)).size(12.0);
             let response = ui.add_enabled(!is_animated, egui::Checkbox::new(&mut varies, name));
             let response = response
                 .on_hover_text(&field.doc)

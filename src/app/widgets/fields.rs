@@ -103,7 +103,7 @@ impl Row {
     fn new(path: String, param: Param, modified: bool, edited: Edited) -> Self {
         Self {
             path,
-            label: label(&param),
+            label: label(&param.name, &param.unit),
             param,
             modified,
             keying: None,
@@ -137,7 +137,7 @@ impl Row {
 /// The name without its unit, as the unit is shown after the number: `radius_m` in meters is
 /// `radius`.
 /// The name of a parameter in words, without the unit, which its value has.
-pub fn label(Param { name, unit, .. }: &Param) -> String {
+pub fn label(name: &str, unit: &str) -> String {
     let stem = [
         ("m", "_m"),
         ("°", "_deg"),
@@ -147,7 +147,7 @@ pub fn label(Param { name, unit, .. }: &Param) -> String {
     .iter()
     .find(|(u, _)| *u == unit);
     stem.and_then(|(_, suffix)| name.strip_suffix(suffix))
-        .unwrap_or(name.as_str())
+        .unwrap_or(name)
         .replace('_', " ")
 }
 
