@@ -252,13 +252,6 @@ proptest! {
             Err(error) => prop_assert!(!(0.0..=1.0).contains(&value), "{error}"),
         }
     }
-
-    #[test]
-    fn no_text_panics(text in "\\PC{0,200}") {
-        let _ = preset_file::parse(&text, "any");
-        let _ = preset_file::from_line(&text);
-        let _ = preset_file::preset_from_png(text.as_bytes(), "any");
-    }
 }
 
 #[test]
