@@ -1,4 +1,4 @@
-//! Random programs on integers, against direct execution.
+//! Random programs on integers, with random expressions, against direct execution.
 
 use rasterlab::evaluator::{NoHost, Word};
 use rasterlab_fuzz::stress::scenes::for_seeds;
@@ -177,6 +177,25 @@ const SIMPLE: [Simple; 15] = [
     ),
 ];
 
+/// Operators on numbers, and what they do.
+const OPERATORS: [(&str, fn(i32, i32) -> i32); 15] = [
+    ("(A + B)", i32::wrapping_add),
+    ("(A - B)", i32::wrapping_sub),
+    ("(A * B)", i32::wrapping_mul),
+    ("(A / B)", |a, b| a.checked_div(b).unwrap_or(a)),
+    ("(A % B)", |a, b| a.checked_rem(b).unwrap_or(0)),
+    ("(A & B)", |a, b| a & b),
+    ("(A | B)", |a, b| a | b),
+    ("(A ^ B)", |a, b| a ^ b),
+    ("(A << bitcast<u32>(B))", |a, b| a << (b & 31)),
+    ("(A >> bitcast<u32>(B))", |a, b| a >> (b & 31)),
+    ("min(A, B)", i32::min),
+    ("max(A, B)", i32::max),
+    ("(-A)", |a, _| a.wrapping_neg()),
+    ("(~A)", |a, _| !a),
+    ("select(A, B, B < 0)", |a, b| if b < 0 { b } else { a }),
+];
+
 struct Generator<'a> {
     random: &'a mut Random,
     names: usize,
@@ -240,12 +259,19 @@ impl Generator<'_> {
     }
 
     fn number(&mut self, names: &Names, depth: u32) -> Read<i32> {
-        let kind = self.random.u32(if depth > 2 { 3 } else { 6 });
+        let kind = self.random.u32(if depth > 2 { 3 } else { 9 });
         let (at, letter) = self.component();
         if kind == 0 {
             let value = self.random.bits() as i32 >> self.random.u32(31);
-            let text = format!("bitcast<i32>({}u)", value.cast_unsigned());
+            // With a variable: constant expressions that overflow would not compile.
+            let text = format!("(bitcast<i32>({}u) + zero)", value.cast_unsigned());
             return read(text, move |_| value);
+        }
+        if kind > 5 {
+            let (operator, of) = OPERATORS[self.random.u32(OPERATORS.len() as u32) as usize];
+            let [a, b] = [0, 1].map(|_| self.number(names, depth + 1));
+            let text = operator.replace('A', &a.text).replace('B', &b.text);
+            return read(text, move |state| of((a.value)(state), (b.value)(state)));
         }
         if kind < 3 {
             let Read { text, value } = self.vector(names, depth + 1);
