@@ -85,7 +85,6 @@ fn uris_that_lead_out_of_the_folder_are_refused_unread() {
         "http://localhost/secret.bin".into(),
         "C:/secret.bin".into(),
         "C%3A/secret.bin".into(),
-        "secret%FF.bin".into(),
         "secret%.bin".into(),
         "secret%+1.bin".into(),
         "secret%00.bin".into(),
