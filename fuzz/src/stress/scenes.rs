@@ -221,9 +221,6 @@ pub fn camera_view(scene: &Scene, camera: &Camera, [width, height]: [u32; 2]) ->
 }
 
 /// The coverage that the oracle computes without any data of an adapter.
-///
-/// # Errors
-/// If the scene exceeds the arithmetic ([`DrawError`]).
 pub fn reference_coverage(scene: &Scene, view: &View) -> Result<oracle::Coverage, DrawError> {
     let draws = draws(scene, view)?;
     let stack = Stack::default();

@@ -4,10 +4,14 @@
 use eframe::egui::{self, Button, Event, Key, Label, RichText, Ui, vec2};
 
 use crate::app::{
-    settings::{SCALES, keymap},
+    settings::{
+        SCALES,
+        keymap::{self, Keymap},
+    },
     shell::{
         action::{Action, POINTER, actions, shortcut_text},
-        command::{Command, Commands, SettingsCommand, Toggle},
+        command::Commands,
+        log::Level,
         state::State,
     },
     widgets::{
@@ -32,8 +36,16 @@ impl SettingsWindow {
         self.binding.is_some()
     }
 
-    fn send(commands: &Commands, command: SettingsCommand) {
-        commands.send(Command::Settings(command));
+    /// Changes the keys; a key that belongs to another action is refused.
+    fn change(
+        commands: &Commands,
+        change: impl FnOnce(&mut Keymap) -> Result<(), String> + 'static,
+    ) {
+        commands.run(|app| {
+            if let Err(refused) = change(&mut app.state.settings.keys) {
+                app.notify(Level::Warning, refused);
+            }
+        });
     }
 
     /// Takes the key that is pressed for the action that waits for one. Escape ends the waiting.
@@ -58,10 +70,8 @@ impl SettingsWindow {
         };
         self.binding = None;
         if key != Key::Escape {
-            Self::send(
-                commands,
-                SettingsCommand::Bind(action, Some(keymap::pressed(key, modifiers))),
-            );
+            let shortcut = keymap::pressed(key, modifiers);
+            Self::change(commands, move |keys| keys.bind(action, shortcut));
         }
     }
 
@@ -73,7 +83,7 @@ impl SettingsWindow {
                 let reset = ui.button("Reset all");
                 let hint = "Give every action its own keys again";
                 if reset.on_hover_text(hint).clicked() {
-                    Self::send(commands, SettingsCommand::ResetAllKeys);
+                    commands.run(|app| app.state.settings.keys.reset_all());
                 }
             });
         });
@@ -148,12 +158,12 @@ impl SettingsWindow {
             icon_button(ui, Icon::Cross, &format!("No key for {label}"))
         });
         if clear.inner.clicked() {
-            Self::send(commands, SettingsCommand::Bind(action, None));
+            commands.run(move |app| app.state.settings.keys.clear(action));
         }
         if state.settings.keys.is_bound(action)
             && icon_button(ui, Icon::Reset, &format!("Reset keys of {label}")).clicked()
         {
-            Self::send(commands, SettingsCommand::ResetKeys(action));
+            Self::change(commands, move |keys| keys.reset(action));
         }
         if let Some(value) = value_text(action, state) {
             at_right(ui, |ui| ui.label(theme::weak(value)));
@@ -177,7 +187,8 @@ impl Panel for SettingsWindow {
                     let mut theme = state.settings.theme;
                     let themes = ThemeChoice::ALL.map(|choice| (choice, choice.label(), ""));
                     if words_ui(ui, "", &mut theme, themes) {
-                        Self::send(commands, SettingsCommand::Theme(theme));
+                        commands
+                            .run(move |app| app.change_settings(|settings| settings.theme = theme));
                     }
                 });
                 field_ui(ui, "Texts and controls", "", |ui| {
@@ -191,7 +202,7 @@ impl Panel for SettingsWindow {
         // The key that opens it closes it, too; the search would keep it.
         is_open &= self.takes_key() || !ui.input(|i| i.key_pressed(Key::F1));
         if !is_open {
-            commands.send(Command::Toggle(Toggle::Settings));
+            commands.perform(Action::Settings);
         }
     }
 }
