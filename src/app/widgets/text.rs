@@ -1,5 +1,6 @@
 //! Numbers as people read them.
 
+<<<<<<< HEAD
 /// `1234567` as `1,234,567`.
 pub fn group_digits(number: u64) -> String {
     let digits = number.to_string();
@@ -12,6 +13,9 @@ pub fn group_digits(number: u64) -> String {
     }
     text
 }
+=======
+pub use crate::params::grouped;
+>>>>>>> far
 
 /// `1.5 MiB`.
 pub fn bytes(bytes: u64) -> String {

@@ -122,6 +122,140 @@ fn textures_that_do_not_fit_are_left_out_by_name() {
 }
 
 #[test]
+<<<<<<< HEAD
+=======
+fn images_that_are_none_are_left_out_by_name() {
+    let place = "material \"paper\": baseColorTexture: image \"flag\": ";
+    let png = encoded(ImageFormat::Png);
+    Model::textured()
+        .showing(b"RIFF....WEBP")
+        .dropped(&format!("{place}cannot decode the image"));
+    Model::textured()
+        .showing(&[])
+        .dropped("it is neither PNG, JPEG nor WebP");
+    for length in [8, 20, 40, png.len() - 16] {
+        Model::textured()
+            .showing(&png[..length])
+            .dropped(&format!("{place}cannot decode the image"));
+    }
+    let mut flipped = png.clone();
+    flipped[20] ^= 64;
+    Model::textured()
+        .showing(&flipped)
+        .dropped("image \"flag\": ");
+    let jpeg = encoded(ImageFormat::Jpeg);
+    Model::textured()
+        .showing(&jpeg[..60])
+        .dropped(&format!("{place}cannot decode the image"));
+}
+
+/// A PNG of one color: a few bytes for any size.
+fn blank(width: u32, height: u32) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, width, height);
+    encoder.set_color(png::ColorType::Grayscale);
+    encoder.set_depth(png::BitDepth::One);
+    encoder.set_compression(png::Compression::High);
+    let mut writer = encoder.write_header().expect("a header");
+    writer
+        .write_image_data(&vec![0; width.div_ceil(8) as usize * height as usize])
+        .expect("texels");
+    writer.finish().expect("an end");
+    bytes
+}
+
+#[test]
+fn an_image_cannot_ask_for_more_than_the_budget() {
+    let bomb = blank(60_000, 60_000 / 50);
+    assert!(bomb.len() < 100_000, "{} bytes", bomb.len());
+    Model::textured()
+        .showing(&bomb)
+        .dropped("image \"flag\": it has 60000 x 1200 texels; allowed: 1 to 32768 along each side");
+    let side = limits::IMAGE_SIDE;
+    assert_eq!(
+        Model::textured()
+            .showing(&blank(side, 16))
+            .with("/samplers/0/minFilter", json!(9729))
+            .scene()
+            .images[0]
+            .size(),
+        [side, 16]
+    );
+    // Two of the largest fit, a third does not; its header is enough to know.
+    let mut model = Model::textured();
+    let largest = model.view(&blank(side, side));
+    for place in 0..3 {
+        let image = model.push("images", json!({ "bufferView": largest, "mimeType": "image/png", "name": format!("large {place}") }));
+        let texture = model.push("textures", json!({ "source": image, "sampler": 0 }));
+        let material = model.push(
+            "materials",
+            json!({ "pbrMetallicRoughness": { "baseColorTexture": { "index": texture } } }),
+        );
+        let primitive = json!({ "attributes": { "POSITION": 0, "TEXCOORD_0": 1 }, "indices": 2, "material": material });
+        model.json["meshes"][0]["primitives"]
+            .as_array_mut()
+            .expect("a list")
+            .push(primitive);
+    }
+    let model = model.with("/samplers/0/minFilter", json!(9729));
+    model.refused("image \"large 1\": with it the decoded images have 536870920 bytes; allowed: at most 536870912");
+}
+
+#[test]
+fn coordinates_that_do_not_fit_are_left_out_by_name() {
+    let place = "mesh \"X\" primitive 0 TEXCOORD_0: ";
+    Model::textured()
+        .with(
+            "/meshes/0/primitives/0/attributes",
+            json!({ "POSITION": 0 }),
+        )
+        .dropped(&format!(
+            "{place}it is missing, although a texture of the material uses it"
+        ));
+    Model::textured()
+        .with(&format!("{BASE}/texCoord"), json!(2))
+        .dropped("mesh \"X\" primitive 0 TEXCOORD_2: it is missing");
+    for (values, sentence) in [
+        (
+            [0.0, 0.0, f32::NAN, 0.0, 1.0, 1.0, 0.0, 1.0],
+            "vertex 1 has a value that is not finite",
+        ),
+        (
+            [0.0, 0.0, 1.0, 0.0, 1.0, f32::INFINITY, 0.0, 1.0],
+            "vertex 2 has a value that is not finite",
+        ),
+        (
+            [0.0, 0.0, 1e6, 0.0, 1.0, 1.0, 0.0, 1.0],
+            "vertex 1 has the image coordinates 1000000 0; allowed: magnitudes up to 65536; the texture is left out",
+        ),
+    ] {
+        let mut model = Model::textured();
+        let texcoords = model.accessor(&le_floats(&values), F32, "VEC2", 4);
+        model
+            .with(
+                "/meshes/0/primitives/0/attributes/TEXCOORD_0",
+                json!(texcoords),
+            )
+            .left_out(&format!("{place}{sentence}"));
+    }
+    let mut short = Model::textured();
+    let texcoords = short.accessor(&le_floats(&[0.0; 6]), F32, "VEC2", 3);
+    short
+        .with(
+            "/meshes/0/primitives/0/attributes/TEXCOORD_0",
+            json!(texcoords),
+        )
+        .dropped("accessor 3 has 3 elements, but the primitive has 4 vertices");
+    Model::textured()
+        .with("/accessors/1/type", json!("SCALAR"))
+        .dropped(place);
+    Model::textured()
+        .with("/accessors/1/componentType", json!(U16))
+        .dropped(place);
+}
+
+#[test]
+>>>>>>> far
 fn cameras_of_a_file_are_chosen_by_name_and_go_with_their_nodes() {
     let model = Model::textured().set(
         r#"

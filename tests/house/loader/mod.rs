@@ -5,6 +5,7 @@
 mod accepted;
 mod compressed;
 mod corpus;
+mod far;
 mod files;
 mod images;
 mod instancing;
@@ -16,6 +17,8 @@ mod mesh_files;
 mod mesh_hostile;
 mod model;
 mod motion;
+mod names;
+mod passing;
 mod refused;
 mod scale;
 mod sound;
