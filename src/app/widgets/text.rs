@@ -1,21 +1,6 @@
 //! Numbers as people read them.
 
-<<<<<<< HEAD
-/// `1234567` as `1,234,567`.
-pub fn group_digits(number: u64) -> String {
-    let digits = number.to_string();
-    let mut text = String::new();
-    for (index, digit) in digits.chars().enumerate() {
-        if index > 0 && (digits.len() - index).is_multiple_of(3) {
-            text.push(',');
-        }
-        text.push(digit);
-    }
-    text
-}
-=======
-pub use crate::params::grouped;
->>>>>>> far
+pub use crate::params::group_digits;
 
 /// `1.5 MiB`.
 pub fn bytes(bytes: u64) -> String {

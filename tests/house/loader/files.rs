@@ -66,11 +66,10 @@ fn uris_that_lead_out_of_the_folder_are_refused_unread() {
     let outer = Folder::new();
     outer.write("secret.bin", Model::square().bytes);
     let absolute = outer.path("secret.bin").display().to_string();
-<<<<<<< HEAD
     let schemes = ["", "file:", "file://", "FILE://"].map(|scheme| scheme.to_owned() + &absolute);
     let others = r"../secret.bin ./../secret.bin a/../../secret.bin %2e%2e/secret.bin %2E%2E%2Fsecret.bin
         ..\secret.bin ..%5csecret.bin http://localhost/secret.bin C:/secret.bin C%3A/secret.bin
-        secret%FF.bin secret%.bin secret%+1.bin secret%00.bin .";
+        secret%.bin secret%+1.bin secret%00.bin .";
     for uri in others
         .split_whitespace()
         .chain([""])
@@ -80,43 +79,6 @@ fn uris_that_lead_out_of_the_folder_are_refused_unread() {
         assert!(error.contains("buffer 0: URI "), "{error}");
         outer.write("inner/model.gltf", beside(uri));
         outer.refusal("inner/model.gltf");
-=======
-    let uris = [
-        "../secret.bin".into(),
-        "./../secret.bin".into(),
-        "a/../../secret.bin".into(),
-        "%2e%2e/secret.bin".into(),
-        "%2E%2E%2Fsecret.bin".into(),
-        "..\\secret.bin".into(),
-        "..%5csecret.bin".into(),
-        absolute.clone(),
-        format!("file:{absolute}"),
-        format!("file://{absolute}"),
-        format!("FILE://{absolute}"),
-        "http://localhost/secret.bin".into(),
-        "C:/secret.bin".into(),
-        "C%3A/secret.bin".into(),
-        "secret%.bin".into(),
-        "secret%+1.bin".into(),
-        "secret%00.bin".into(),
-        "".into(),
-        ".".into(),
-    ];
-    for uri in uris {
-        let text = model
-            .clone()
-            .with("/buffers/0/uri", json!(uri))
-            .json
-            .to_string();
-        let error = gltf::load(text.as_bytes(), &mut |path, _| {
-            panic!("{uri}: {} was asked for", path.display())
-        })
-        .expect_err(&uri);
-        assert!(error.to_string().contains("buffer 0: URI "), "{error}");
-        let file = outer.path("inner/model.gltf");
-        fs::write(&file, text).unwrap();
-        assert!(host::model::load(&file).is_err(), "{uri}");
->>>>>>> far
     }
 }
 

@@ -126,19 +126,9 @@ fn a_file_that_is_cut_short_while_it_is_open_is_a_sentence() {
     let path = folder.path().join("cut.glb");
     let glb = cloth(300).glb();
     fs::write(&path, &glb[..glb.len() / 2]).unwrap();
-<<<<<<< HEAD
     let error = host::model::load(&path).unwrap_err().to_string();
-    let is_told = error.contains("exceeds buffer 0, which has ");
-    assert!(error.starts_with("cut.glb: mesh ") && is_told, "{error}");
-=======
-    let error = host::model::load(&path).unwrap_err();
-    assert!(
-        error
-            .to_string()
-            .starts_with("cut.glb: the file is cut off after 1,613,074 of "),
-        "{error}"
-    );
->>>>>>> far
+    let place = "cut.glb: the file is cut off after 1,613,074 of ";
+    assert!(error.starts_with(place), "{error}");
 }
 
 #[test]
