@@ -1,9 +1,9 @@
 //! Random programs on integers, with random expressions, against direct execution.
 
-use proptest::prelude::*;
 use rasterlab::evaluator::{NoHost, Word};
+use rasterlab_fuzz::stress::scenes::for_seeds;
 
-use super::common::{Random, program};
+use super::common::{OPERATORS, Random, program};
 
 type V = [i32; 4];
 
@@ -175,25 +175,6 @@ const SIMPLE: [Simple; 15] = [
             }
         },
     ),
-];
-
-/// Operators on numbers, and what they do.
-const OPERATORS: [(&str, fn(i32, i32) -> i32); 15] = [
-    ("(A + B)", i32::wrapping_add),
-    ("(A - B)", i32::wrapping_sub),
-    ("(A * B)", i32::wrapping_mul),
-    ("(A / B)", |a, b| a.checked_div(b).unwrap_or(a)),
-    ("(A % B)", |a, b| a.checked_rem(b).unwrap_or(0)),
-    ("(A & B)", |a, b| a & b),
-    ("(A | B)", |a, b| a | b),
-    ("(A ^ B)", |a, b| a ^ b),
-    ("(A << bitcast<u32>(B))", |a, b| a << (b & 31)),
-    ("(A >> bitcast<u32>(B))", |a, b| a >> (b & 31)),
-    ("min(A, B)", i32::min),
-    ("max(A, B)", i32::max),
-    ("(-A)", |a, _| a.wrapping_neg()),
-    ("(~A)", |a, _| !a),
-    ("select(A, B, B < 0)", |a, b| if b < 0 { b } else { a }),
 ];
 
 struct Generator<'a> {
@@ -425,26 +406,40 @@ impl Generator<'_> {
     }
 }
 
-proptest! {
-    #![proptest_config(ProptestConfig { cases: std::env::var("PROPTEST_CASES").ok().and_then(|cases| cases.parse().ok()).unwrap_or(256), failure_persistence: None, ..ProptestConfig::default() })]
-
-    #[test]
-    fn statements(seed in any::<u64>()) {
-        let mut random = Random(seed);
-        let mut generator = Generator { random: &mut random, names: 0, budget: 40 };
+#[test]
+fn statements() {
+    for_seeds(256, |rng| {
+        let mut random = Random(u64::from(rng.next_u32()) << 32 | u64::from(rng.next_u32()));
+        let mut generator = Generator {
+            random: &mut random,
+            names: 0,
+            budget: 40,
+        };
         let (body, run) = generator.block(0, &mut Vec::new());
-        let source = format!("{PRELUDE}\nfn f(a: vec4i, b: vec4i) -> vec4i {{\nvar s: S;\ns.v = a;\nvar w = b;\n{body}return {RESULT};\n}}\n");
+        let source = format!(
+            "{PRELUDE}\nfn f(a: vec4i, b: vec4i) -> vec4i {{\nvar s: S;\ns.v = a;\nvar w = b;\n{body}return {RESULT};\n}}\n"
+        );
         let program = program(&source, "f");
         let mut machine = program.machine();
         for _ in 0..4 {
-            let arguments: Vec<i32> = (0..8).map(|_| random.bits() as i32 >> random.u32(30)).collect();
-            let mut state = State { g: [1, 2, 3, 4], ..State::default() };
+            let arguments: Vec<i32> = (0..8)
+                .map(|_| random.bits() as i32 >> random.u32(30))
+                .collect();
+            let mut state = State {
+                g: [1, 2, 3, 4],
+                ..State::default()
+            };
             state.s.v.copy_from_slice(&arguments[..4]);
             state.w.copy_from_slice(&arguments[4..]);
-            let expected = if run(&mut state) { state.w } else { result(&state) };
+            let expected = if run(&mut state) {
+                state.w
+            } else {
+                result(&state)
+            };
             let words: Vec<Word> = arguments.iter().map(|&x| Word::from_i32(x)).collect();
-            let given: Vec<i32> = machine.call(&words, &mut NoHost).expect("it ends").iter().map(|word| word.to_i32()).collect();
-            prop_assert_eq!(given, expected, "{} at {:?}", source, arguments);
+            let given = machine.call(&words, &mut NoHost).expect("it ends");
+            let given: Vec<i32> = given.iter().map(|word| word.to_i32()).collect();
+            assert_eq!(given, expected, "{source} at {arguments:?}");
         }
-    }
+    });
 }
