@@ -38,27 +38,3 @@ fn a_link_opens_as_the_preset_and_carries_its_bits() {
         ! not bit by bit"
     ));
 }
-
-#[test]
-fn a_page_stands_alone_and_overwrites_nothing_unasked() {
-    let place = Place::with([("plain.toml", PLAIN)]);
-    place.play("$ page plain.toml -o plain.html --page https://example.org/\"onload=\"x\n!=");
-    let text = String::from_utf8(place.read("plain.html")).unwrap();
-    for part in [
-        "src=\"data:image/png;base64,iVBOR",
-        "&lt;b&gt;Plain &amp; simple&lt;/b&gt;",
-        "https://example.org/&quot;onload=&quot;x?embed#rasterlab1:",
-    ] {
-        assert!(text.contains(part), "{part} is missing in\n{text}");
-    }
-    for name in [
-        "{title}", "{page}", "{line}", "{png}", "{width}", "{height}",
-    ] {
-        assert!(!text.contains(name), "{name} is left");
-    }
-    place.play("$2 page plain.toml -o plain.html\n! --force");
-    assert_eq!(place.read("plain.html"), text.as_bytes());
-    place.play("$ page plain.toml -o plain.html --force");
-    let replaced = String::from_utf8(place.read("plain.html")).unwrap();
-    assert!(replaced.contains("http://localhost:8000/?embed#rasterlab1:"));
-}

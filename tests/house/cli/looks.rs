@@ -70,21 +70,3 @@ fn lengths_are_fitted_to_the_model() {
     let word = set.stack.get("inflate").expect("it is enabled").words[0];
     assert_eq!((word, set.room), (0.25f32.to_bits(), 2.0));
 }
-
-#[test]
-fn what_a_look_leaves_out_is_one_warning_each_and_strict_makes_it_an_error() {
-    let place = place();
-    let text = "schema = 2\n[scene]\nbuiltin = \"walker\"\nclip = \"Walk\"\n[effects.hatch]\non = [\"node:walker 1\", \"mesh:tri\"]\n";
-    place.put("look.toml", text);
-    let line = "render tri.gltf --preset look.toml CPU8x6";
-    let run = place.run(line);
-    assert_eq!(run.code, 0, "{}", run.err);
-    for words in [
-        "clip \"Walk\" was left out",
-        "effects.hatch.on: 1 of its 2 parts",
-    ] {
-        let count = run.err.lines().filter(|line| line.contains(words)).count();
-        assert_eq!(count, 1, "{words}: {}", run.err);
-    }
-    place.play(&format!("$2 {line} --strict --force"));
-}

@@ -7,7 +7,6 @@ mod effects;
 mod faults;
 mod files_kept;
 mod films;
-mod goldens;
 mod limits;
 mod links;
 mod looks;
@@ -219,7 +218,8 @@ impl Place {
     /// - `$ LINE` runs and ends with exit code 0, `$2 LINE` with 2: then stderr has one error and,
     ///   except for `check`, stdout is empty;
     /// - `> TEXT` and `! TEXT`: stdout and stderr have this text, or these, with `&&` between them;
-    /// - `>- TEXT`, `!- TEXT`: they have it nowhere; `>= TEXT`, `!= TEXT`: they are this text;
+    /// - `!1 TEXT`: stderr has it once; `>- TEXT`, `!- TEXT`: they have it nowhere; `>= TEXT`, `!= TEXT`: they are this text;
+    /// - `>> NAME TEXT`, `>>- NAME TEXT`: the file has this text, or has it nowhere;
     /// - `/results/0/name VALUE`: what the JSON object on stdout has there;
     /// - `@ NAME TEXT` writes a file, `@- NAME` removes it;
     /// - `+ NAME` and `- NAME`: the file is there, or is not; `== A B`: two files have the same bytes,
@@ -272,6 +272,7 @@ impl Place {
                 }
                 ">" => assert!(parts().all(|part| last.out.contains(part)), "{}", told()),
                 "!" => assert!(parts().all(|part| last.err.contains(part)), "{}", told()),
+                "!1" => assert_eq!(last.err.matches(&*text).count(), 1, "{}", told()),
                 ">-" => assert!(parts().all(|part| !last.out.contains(part)), "{}", told()),
                 "!-" => assert!(parts().all(|part| !last.err.contains(part)), "{}", told()),
                 ">=" => assert_eq!(last.out, text, "{}", told()),
@@ -279,6 +280,11 @@ impl Place {
                 "@" => {
                     let (name, text) = text.split_once(' ').unwrap_or((&text, ""));
                     self.put(name, text);
+                }
+                ">>" | ">>-" => {
+                    let (name, text) = text.split_once(' ').expect("a file and a text");
+                    let file = String::from_utf8_lossy(&self.read(name)).into_owned();
+                    assert_eq!(file.contains(text), mark == ">>", "{}", told());
                 }
                 "@-" => self.remove(&rest),
                 "+" => assert!(self.has(&rest), "{}", told()),

@@ -73,36 +73,6 @@ fn variants_are_listed_as_what_set_takes_and_drawn_in_their_colors() {
 }
 
 #[test]
-fn a_part_that_is_not_there_is_a_warning_and_with_strict_an_error() {
-    let place = Place::new();
-    let transcript = r#"
-        @ mine.toml schema = 2\n[scene]\nbuiltin = "cube-wall"\n[effects.toon]\non = ["material:corral", "mesh:cube"]\n[output]\nsize = [8, 8]\n
-        $ check mine.toml
-        >= ok    mine\n
-        ! warning: WANTED && did you mean "coral"?
-        $2 check mine.toml --strict
-        > WANTED
-        $ render mine.toml CPU -o a.png
-        ! WANTED
-        $2 render mine.toml CPU -o b.png --strict
-        ! WANTED
-        - b.png
-        $ check mine.toml --strict --set toon.on=["material:c*"]
-        !=
-    "#;
-    let wanted = "mine.toml: effects.toon.on: the scene has no material that matches \"corral\"";
-    place.play(&transcript.replace("WANTED", wanted));
-    assert_eq!(
-        place
-            .run("check mine.toml")
-            .err
-            .matches("effects.toon.on")
-            .count(),
-        1
-    );
-}
-
-#[test]
 fn explain_says_what_effects_act_on() {
     let place = Place::new();
     let line = "explain cube-wall CPU --set 'toon.on=[\"material:coral\", \"node:cube 1?\"]'";
