@@ -5,6 +5,7 @@ use std::{path::Path, sync::Arc};
 
 use eframe::egui::{self, Button, Key, Label, Ui, vec2};
 
+use crate::app::panels::panel::Panel;
 use crate::{
     accuracy::RenderScale,
     app::{
@@ -14,7 +15,7 @@ use crate::{
         shell::{command::Commands, log::Level, state::State},
         widgets::{
             form::{field_ui, form_ui, menu_ui, number_ui, text_ui, words_ui},
-            panel::{Panel, at_right, centered_window, main_button},
+            panel::{at_right, centered_window, main_button},
             size::size_ui,
             text::cut_middle,
             theme,

@@ -3,14 +3,11 @@
 use eframe::egui::Ui;
 
 use super::dialogs::buttons::buttons;
+use crate::app::panels::panel::Panel;
 use crate::app::{
     files::{command::Naming, library},
     shell::{command::Commands, state::State},
-    widgets::{
-        form::name_ui,
-        panel::{Panel, modal},
-        theme,
-    },
+    widgets::{form::name_ui, panel::modal, theme},
 };
 
 const WIDTH: f32 = 400.0;

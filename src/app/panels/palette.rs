@@ -5,13 +5,14 @@ use eframe::egui::{
     pos2, vec2,
 };
 
+use crate::app::panels::panel::Panel;
 use crate::{
     app::{
         editing::session::Session,
         palette::{Choice, Entry, MAX_LISTED, entries, perform, rank},
         shell::{action::Action, command::Commands, state::State},
         widgets::{
-            panel::{Panel, at_right, describe_chosen},
+            panel::{at_right, describe_chosen},
             theme,
         },
     },

@@ -5,6 +5,7 @@ use std::{collections::HashMap, sync::Arc};
 
 use eframe::egui::{self, RichText, Sense, Ui, vec2};
 
+use crate::app::panels::panel::Panel;
 use crate::{
     app::{
         editing::apply::recall_seed,
@@ -20,7 +21,7 @@ use crate::{
         },
         widgets::{
             fields::label,
-            panel::{Panel, describe_chosen, main_button, picture_ui, plate, window},
+            panel::{describe_chosen, main_button, picture_ui, plate, window},
             theme,
         },
     },

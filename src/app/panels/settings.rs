@@ -3,6 +3,7 @@
 
 use eframe::egui::{self, Button, Event, Key, Label, RichText, Ui, vec2};
 
+use crate::app::panels::panel::{Panel, performs};
 use crate::app::{
     settings::{
         SCALES,
@@ -17,7 +18,7 @@ use crate::app::{
     widgets::{
         form::{field_ui, form_ui, is_entered, search_ui, words_ui},
         icons::{Icon, icon_button},
-        panel::{Panel, at_right, centered_window, performs},
+        panel::{at_right, centered_window},
         theme::{self, ThemeChoice},
     },
 };

@@ -8,6 +8,7 @@ use std::sync::{
 
 use eframe::egui::{self, RichText, Sense, Ui, vec2};
 
+use crate::app::panels::panel::Panel;
 use crate::{
     app::{
         editing::apply::set_values,
@@ -18,7 +19,7 @@ use crate::{
         shell::{command::Commands, state::State},
         widgets::{
             form::{field_ui, form_ui, menu_ui, number_ui},
-            panel::{Panel, describe, main_button, picture_ui, window},
+            panel::{describe, main_button, picture_ui, window},
             theme,
         },
     },

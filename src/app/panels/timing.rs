@@ -6,6 +6,7 @@ use egui_plot::{Bar, BarChart, HLine, LineStyle};
 
 use super::trade::plot::still_plot;
 
+use crate::app::panels::panel::Panel;
 use crate::{
     app::{
         picture::{
@@ -15,7 +16,7 @@ use crate::{
         shell::{action::Action, command::Commands, state::State, ui_frames::UiFrames},
         widgets::{
             icons::{Icon, icon_button, swatch},
-            panel::{Panel, at_right},
+            panel::at_right,
             text::short,
             theme,
         },

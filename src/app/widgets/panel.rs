@@ -1,4 +1,4 @@
-//! What every panel has in common.
+//! How every panel places and describes what it shows.
 
 use eframe::egui::{
     Align, Align2, Button, Context, FontId, Image, Layout, Modal, Painter, Pos2, Rect, Response,
@@ -6,13 +6,6 @@ use eframe::egui::{
 };
 
 use super::theme;
-use crate::app::shell::{action::Action, command::Commands, state::State};
-
-/// A part of the window. It owns what only it needs, reads the state, and sends commands for
-/// everything else.
-pub trait Panel {
-    fn ui(&mut self, ui: &mut Ui, state: &State, commands: &Commands);
-}
 
 /// Contents at the right end, from right to left.
 pub fn at_right<R>(ui: &mut Ui, contents: impl FnOnce(&mut Ui) -> R) -> R {
@@ -59,13 +52,6 @@ pub fn main_button(text: &str) -> Button<'_> {
 /// An entry of a menu that is so wide.
 pub fn entry(text: &str, width: f32) -> Button<'_> {
     Button::new(text).min_size(vec2(width, theme::ROW))
-}
-
-/// Performs `action` when `button` is clicked, which says so on hover.
-pub fn performs(button: Response, commands: &Commands, action: Action) {
-    if button.on_hover_text(action.hint()).clicked() {
-        commands.perform(action);
-    }
 }
 
 /// Tells assistive technology what was painted by hand.

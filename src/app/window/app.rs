@@ -13,6 +13,7 @@ use super::{
     escape::escape, fold::Fold, input, loss::LossFlag, pointer_frames::PointerFrames,
     typing::HeldTyping,
 };
+use crate::app::panels::panel::Panel;
 use crate::{
     app::{
         editing::{history::History, trust::Trust},
@@ -40,7 +41,7 @@ use crate::{
             state::{Clipboard, Closing, State},
             ui_frames::UiFrames,
         },
-        widgets::{panel::Panel, theme},
+        widgets::theme,
     },
     gpu::device::AdapterChoice,
     host,

@@ -14,6 +14,7 @@ use super::{
     inspector::effect_menu,
     preset_browser::thumbnails::{Size, Thumbnails},
 };
+use crate::app::panels::panel::Panel;
 use crate::{
     app::{
         editing::{session::Session, stack_drag::StackDrag},
@@ -29,7 +30,7 @@ use crate::{
         widgets::{
             form::{is_entered, search_ui},
             icons::star_toggle,
-            panel::{Panel, modal},
+            panel::modal,
             theme,
             tile::{Tile, Tiling},
         },

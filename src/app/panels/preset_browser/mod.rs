@@ -18,6 +18,7 @@ use self::{
     thumbnails::Size,
 };
 use super::effect_browser::EffectBrowser;
+use crate::app::panels::panel::Panel;
 use crate::{
     app::{
         editing::session::FileId,
@@ -32,7 +33,7 @@ use crate::{
         shell::{action::Action, command::Commands, state::State},
         widgets::{
             icons::{Icon, icon_button},
-            panel::{Panel, at_right},
+            panel::at_right,
             theme,
             tile::{Tile, Tiling},
         },

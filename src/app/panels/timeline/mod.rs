@@ -11,6 +11,7 @@ use std::collections::BTreeSet;
 use eframe::egui::{self, Align, DragValue, Layout, Rect, Ui, pos2, vec2};
 
 use self::span::Span;
+use crate::app::panels::panel::Panel;
 use crate::{
     app::{
         editing::apply::keyframe,
@@ -22,7 +23,7 @@ use crate::{
         },
         widgets::{
             icons::{Icon, icon_button, toggle_button},
-            panel::{Panel, at_right},
+            panel::at_right,
             theme,
         },
     },

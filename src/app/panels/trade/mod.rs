@@ -8,6 +8,7 @@ use std::sync::Arc;
 
 use eframe::egui::{self, RichText, Ui};
 
+use crate::app::panels::panel::Panel;
 use crate::{
     accuracy::{AXES, Axis},
     app::{
@@ -22,7 +23,7 @@ use crate::{
         },
         widgets::{
             icons::{Icon, icon_button},
-            panel::{Panel, at_right, main_button},
+            panel::{at_right, main_button},
             text::first_line,
             theme,
         },
