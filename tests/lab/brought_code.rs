@@ -1,7 +1,7 @@
 //! Promise: the code that a preset brings runs in the window only after the user has allowed it.
 //! Until then scene and picture stay.
 
-use eframe::egui::Role;
+use egui::Role;
 use egui_kittest::kittest::Queryable as _;
 use rasterlab::preset_file::{self, PresetFile};
 

@@ -4,7 +4,7 @@
 
 use std::path::Path;
 
-use eframe::egui::Role;
+use egui::Role;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 
 use crate::harness::*;

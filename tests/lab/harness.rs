@@ -10,18 +10,15 @@ use std::{
     time::{Duration, Instant},
 };
 
-use eframe::{
-    egui::{
-        Event, Key, Modifiers, Pos2, Rect, Role, TexturesDelta, ThemePreference,
-        accesskit::Toggled, mutex::RwLock,
-    },
-    egui_wgpu::{self, RenderState, RendererOptions, ScreenDescriptor, WgpuConfiguration},
-    wgpu,
+use egui::{
+    Event, Key, Modifiers, Pos2, Rect, Role, TexturesDelta, ThemePreference, accesskit::Toggled,
+    mutex::RwLock,
 };
 use egui_kittest::{
     Harness, Node, TestRenderer,
     kittest::{NodeT as _, Queryable as _},
 };
+use egui_wgpu::{RenderState, RendererOptions, ScreenDescriptor, WgpuConfiguration};
 use rasterlab::{
     app::{App, Devices, Options, Painter, wgpu_setup},
     gpu::{Gpu, device::AdapterChoice},

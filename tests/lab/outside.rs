@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use eframe::egui::Role;
+use egui::Role;
 use egui_kittest::kittest::Queryable as _;
 use rasterlab::{
     preset::SceneSource,
@@ -119,7 +119,7 @@ fn orbiting_is_no_unsaved_change() {
     drag(
         &mut lab,
         view.center(),
-        view.center() + eframe::egui::vec2(40.0, 10.0),
+        view.center() + egui::vec2(40.0, 10.0),
     );
     assert_ne!(lab.state().preset_file().preset.camera, camera);
     assert!(lab.query_by_label("unsaved").is_none());

@@ -2,7 +2,7 @@
 //! reject them, only the oracle's picture becomes a golden, and the queue comes back at the next
 //! start.
 
-use eframe::egui::{Key, Modifiers, Role};
+use egui::{Key, Modifiers, Role};
 use egui_kittest::kittest::Queryable as _;
 use rasterlab::{
     golden,

@@ -1,7 +1,7 @@
 //! Promise: the parts that an effect changes are chosen in the inspector, from a list or by a click
 //! on the model; every choice is a step of undo, and a part that the scene does not have is said.
 
-use eframe::egui::{self, Key, Modifiers, Role};
+use egui::{self, Key, Modifiers, Role};
 use egui_kittest::kittest::Queryable as _;
 
 use crate::harness::*;

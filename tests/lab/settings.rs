@@ -4,7 +4,7 @@
 
 use std::path::Path;
 
-use eframe::egui::{Event, Key, Modifiers, Pos2, Rect, Role, Theme, ViewportId, vec2};
+use egui::{Event, Key, Modifiers, Pos2, Rect, Role, Theme, ViewportId, vec2};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use rasterlab::preset_file::Folders;
 
@@ -232,10 +232,10 @@ fn the_open_preset_comes_back_with_its_edits_and_the_command_line_wins() {
     // Discarded edits do not come back.
     lab.input_mut()
         .viewports
-        .entry(eframe::egui::ViewportId::ROOT)
+        .entry(egui::ViewportId::ROOT)
         .or_default()
         .events
-        .push(eframe::egui::ViewportEvent::Close);
+        .push(egui::ViewportEvent::Close);
     lab.run_steps(4);
     click(&mut lab, Role::Button, "Discard");
     drop(lab);

@@ -1,7 +1,7 @@
 //! Promise: a sweep draws one or two parameters as a contact sheet in the window, and a click on a
 //! picture takes its values; random values can be locked, kept near, and gone back to.
 
-use eframe::egui::{Key, Modifiers, Role};
+use egui::{Key, Modifiers, Role};
 use egui_kittest::kittest::Queryable as _;
 
 use crate::harness::*;

@@ -1,6 +1,6 @@
 //! Taking in what jobs have finished that threads do in one way, and a page in another.
 
-use eframe::egui::ColorImage;
+use egui::ColorImage;
 
 use crate::app::{
     App,

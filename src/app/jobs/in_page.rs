@@ -8,7 +8,6 @@ use std::{
     time::Duration,
 };
 
-use eframe::egui;
 use js_sys::Uint8Array;
 
 use super::{

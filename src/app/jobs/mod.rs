@@ -19,8 +19,6 @@ use std::{
     thread::JoinHandle,
 };
 
-use eframe::egui;
-
 use crate::{
     app::{
         App,

@@ -5,8 +5,6 @@ use std::sync::{
     atomic::{AtomicBool, Ordering},
 };
 
-use eframe::egui;
-
 use super::{
     Done, Jobs, background, caught, caught_future, done,
     finished::{

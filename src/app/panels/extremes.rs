@@ -7,7 +7,7 @@ use std::{
     time::Duration,
 };
 
-use eframe::egui::{self, Color32, RichText, Ui};
+use egui::{self, Color32, RichText, Ui};
 use pollster::FutureExt as _;
 use web_time::Instant;
 

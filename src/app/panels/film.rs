@@ -3,7 +3,7 @@
 
 use std::{path::Path, sync::Arc};
 
-use eframe::egui::{self, Button, Key, Label, Ui, vec2};
+use egui::{self, Button, Key, Label, Ui, vec2};
 
 use crate::app::panels::panel::Panel;
 use crate::{

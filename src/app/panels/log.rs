@@ -1,6 +1,6 @@
 //! The log panel, and the toasts over the picture.
 
-use eframe::egui::{self, Rect, RichText, Ui};
+use egui::{self, Rect, RichText, Ui};
 
 use crate::app::panels::panel::Panel;
 use crate::app::{

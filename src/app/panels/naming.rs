@@ -1,6 +1,6 @@
 //! The dialog that asks for a name: of a preset, of saved values of an effect, or of a bookmark.
 
-use eframe::egui::Ui;
+use egui::Ui;
 
 use super::dialogs::buttons::buttons;
 use crate::app::panels::panel::Panel;

@@ -1,6 +1,6 @@
 //! The command palette: a search over everything that the window can do, over the picture.
 
-use eframe::egui::{
+use egui::{
     self, Align, Align2, FontId, Key, Modifiers, Rect, RichText, ScrollArea, Sense, TextEdit, Ui,
     pos2, vec2,
 };

@@ -1,6 +1,6 @@
 //! What every panel is.
 
-use eframe::egui::{Response, Ui};
+use egui::{Response, Ui};
 
 use crate::app::shell::{action::Action, command::Commands, state::State};
 

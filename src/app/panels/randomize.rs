@@ -3,7 +3,7 @@
 
 use std::{collections::HashMap, sync::Arc};
 
-use eframe::egui::{self, RichText, Sense, Ui, vec2};
+use egui::{self, RichText, Sense, Ui, vec2};
 
 use crate::app::panels::panel::Panel;
 use crate::{

@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use eframe::egui::{self, Color32, Pos2, Rect, RichText, Sense, Ui, pos2, vec2};
+use egui::{self, Color32, Pos2, Rect, RichText, Sense, Ui, pos2, vec2};
 
 use super::viewport::compare_ui::divider_ui;
 use crate::app::panels::panel::{Panel, performs};

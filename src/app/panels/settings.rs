@@ -1,7 +1,7 @@
 //! The settings window: theme, size of texts and controls, and the cheat sheet: every action with
 //! its keys, which can be changed, and its present value.
 
-use eframe::egui::{self, Button, Event, Key, Label, RichText, Ui, vec2};
+use egui::{self, Button, Event, Key, Label, RichText, Ui, vec2};
 
 use crate::app::panels::panel::{Panel, performs};
 use crate::app::{

@@ -6,7 +6,7 @@ use std::sync::{
     atomic::{AtomicBool, Ordering},
 };
 
-use eframe::egui::{self, RichText, Sense, Ui, vec2};
+use egui::{self, RichText, Sense, Ui, vec2};
 
 use crate::app::panels::panel::Panel;
 use crate::{

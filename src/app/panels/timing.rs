@@ -1,7 +1,7 @@
 //! The timing panel: the newest frames as a plot, and the median and spread of the frame and of its
 //! passes.
 
-use eframe::egui::{self, Color32, RichText, Ui, vec2};
+use egui::{self, Color32, RichText, Ui, vec2};
 use egui_plot::{Bar, BarChart, HLine, LineStyle};
 
 use super::trade::plot::still_plot;

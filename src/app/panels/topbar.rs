@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use eframe::egui::{self, Align, Layout, RichText, Sense, Ui, vec2};
+use egui::{self, Align, Layout, RichText, Sense, Ui, vec2};
 
 use super::anti_aliasing::anti_aliasing_ui;
 use crate::app::panels::panel::Panel;

@@ -1,7 +1,7 @@
 //! Time and error of a picture in words and colors, as the top bar, the comparison and the
 //! inspector show them.
 
-use eframe::egui::Color32;
+use egui::Color32;
 
 use super::{
     findings::Findings,

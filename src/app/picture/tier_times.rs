@@ -4,8 +4,6 @@
 
 use std::sync::Arc;
 
-use eframe::egui;
-
 use super::{
     picture_thread::wait_for_frame,
     precision::REST_S,

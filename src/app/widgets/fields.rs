@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use eframe::egui::{
+use egui::{
     self, Align, Color32, Rect, Response, Sense, Slider, SliderClamping, Ui, UiBuilder, pos2, vec2,
 };
 

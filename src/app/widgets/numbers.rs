@@ -3,7 +3,7 @@
 
 use std::cell::RefCell;
 
-use eframe::egui::{self, DragValue, Response, Ui};
+use egui::{self, DragValue, Response, Ui};
 
 use super::theme;
 

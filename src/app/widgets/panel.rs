@@ -1,6 +1,6 @@
 //! How every panel places and describes what it shows.
 
-use eframe::egui::{
+use egui::{
     Align, Align2, Button, Context, FontId, Image, Layout, Modal, Painter, Pos2, Rect, Response,
     Role, TextureHandle, Ui, WidgetInfo, Window, vec2,
 };
@@ -40,8 +40,8 @@ pub fn centered_window<'a>(ctx: &Context, title: &'a str, is_open: &'a mut bool)
 
 /// A dialog that takes all keys.
 pub fn modal(ctx: &Context, id: &str, margin: f32) -> Modal {
-    let frame = eframe::egui::Frame::window(&ctx.global_style()).inner_margin(margin);
-    Modal::new(eframe::egui::Id::unique(id)).frame(frame)
+    let frame = egui::Frame::window(&ctx.global_style()).inner_margin(margin);
+    Modal::new(egui::Id::unique(id)).frame(frame)
 }
 
 /// The button of what a window is there for.

@@ -1,7 +1,7 @@
 //! Showing a row of the inspector that the user has asked for by its path: folders open, the panel
 //! scrolls there, and the control of the row has the focus.
 
-use eframe::egui::{self, Align, Rect, Response, Ui};
+use egui::{self, Align, Rect, Response, Ui};
 
 use super::theme;
 

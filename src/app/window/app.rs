@@ -7,7 +7,7 @@ use std::{
     time::Duration,
 };
 
-use eframe::egui::{self, Ui, ViewportCommand};
+use egui::{self, Ui, ViewportCommand};
 
 use super::{
     escape::escape, fold::Fold, input, loss::LossFlag, pointer_frames::PointerFrames,

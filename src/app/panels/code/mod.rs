@@ -5,9 +5,7 @@ mod highlight;
 
 use std::path::{Path, PathBuf};
 
-use eframe::egui::{
-    self, Color32, Key, Modifiers, ScrollArea, TextEdit, TextStyle, Ui, pos2, vec2,
-};
+use egui::{self, Color32, Key, Modifiers, ScrollArea, TextEdit, TextStyle, Ui, pos2, vec2};
 
 use crate::app::panels::panel::Panel;
 use crate::{

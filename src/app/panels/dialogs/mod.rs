@@ -9,7 +9,7 @@ use std::{
     sync::Arc,
 };
 
-use eframe::egui::Ui;
+use egui::Ui;
 
 use self::{
     buttons::{Choice, buttons},

@@ -6,7 +6,7 @@ use std::{
     path::{Path, PathBuf, is_separator},
 };
 
-use eframe::egui::{
+use egui::{
     self, Align2, Key, Modifiers, RichText, Sense, Ui,
     text::{CCursor, CCursorRange},
     text_edit::TextEditState,

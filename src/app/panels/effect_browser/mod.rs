@@ -7,7 +7,7 @@ use std::sync::{
     atomic::{AtomicBool, Ordering},
 };
 
-use eframe::egui::{self, ScrollArea, Ui};
+use egui::{self, ScrollArea, Ui};
 
 use self::groups::{Group, best, group_effects};
 use super::{

@@ -14,7 +14,7 @@ pub mod rows;
 mod scene;
 mod scope;
 
-use eframe::egui::{self, Ui};
+use egui::{self, Ui};
 
 use self::rows::{folder, lead_to, setting_ui, settings_folder};
 use crate::app::panels::panel::Panel;

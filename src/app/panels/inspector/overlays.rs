@@ -1,6 +1,6 @@
 //! The folder of the overlays: which are shown, and how many pixels each paints.
 
-use eframe::egui::{RichText, Ui};
+use egui::{RichText, Ui};
 
 use crate::app::{
     picture::overlay::Overlay,

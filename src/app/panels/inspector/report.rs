@@ -1,6 +1,6 @@
 //! What the newest picture cost and how it was drawn: the folders Timing and Kernel.
 
-use eframe::egui::{self, RichText, Ui};
+use egui::{self, RichText, Ui};
 
 use crate::{
     app::{

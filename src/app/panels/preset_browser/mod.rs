@@ -9,7 +9,7 @@ pub mod toolbar;
 
 use std::time::SystemTime;
 
-use eframe::egui::{self, Align, RichText, Ui, vec2};
+use egui::{self, Align, RichText, Ui, vec2};
 
 use self::{
     arrange::{Filter, Item, arrange, tags},

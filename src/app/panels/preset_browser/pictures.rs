@@ -3,7 +3,7 @@
 
 use std::sync::{Arc, Weak};
 
-use eframe::egui::{self, ColorImage, Context, TextureHandle, Ui};
+use egui::{self, ColorImage, Context, TextureHandle, Ui};
 
 use super::thumbnails::{Size, Thumbnails};
 use crate::{

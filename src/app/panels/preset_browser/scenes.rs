@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use eframe::egui::{self, Align2, DragValue, Label, Sense, Ui, vec2};
+use egui::{self, Align2, DragValue, Label, Sense, Ui, vec2};
 
 use crate::{
     app::{

@@ -3,7 +3,7 @@
 
 use std::collections::{HashMap, HashSet};
 
-use eframe::egui::{self, TextureHandle};
+use egui::{self, TextureHandle};
 
 use crate::app::picture::effect_picture;
 

@@ -8,7 +8,7 @@ mod tracks;
 
 use std::collections::BTreeSet;
 
-use eframe::egui::{self, Align, DragValue, Layout, Rect, Ui, pos2, vec2};
+use egui::{self, Align, DragValue, Layout, Rect, Ui, pos2, vec2};
 
 use self::span::Span;
 use crate::app::panels::panel::Panel;

@@ -6,7 +6,7 @@ mod table;
 
 use std::sync::Arc;
 
-use eframe::egui::{self, RichText, Ui};
+use egui::{self, RichText, Ui};
 
 use crate::app::panels::panel::Panel;
 use crate::{

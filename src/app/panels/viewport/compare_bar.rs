@@ -1,6 +1,6 @@
 //! The bar of a comparison: how A and B are shown, how they differ, and which side is which.
 
-use eframe::egui::{self, Align2, Rect, RichText, Ui, pos2, vec2};
+use egui::{self, Align2, Rect, RichText, Ui, pos2, vec2};
 
 use super::compare::{Compare, Difference, Mode};
 use crate::{

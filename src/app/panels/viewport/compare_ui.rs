@@ -1,6 +1,6 @@
 //! The comparison over the picture: A, the divider, the bar and the plates.
 
-use eframe::egui::{self, Color32, CursorIcon, Pos2, Rect, Sense, Ui, pos2, vec2};
+use egui::{self, Color32, CursorIcon, Pos2, Rect, Sense, Ui, pos2, vec2};
 
 use super::{
     compare::{Compare, Mode},

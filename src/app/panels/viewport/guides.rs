@@ -1,7 +1,7 @@
 //! Guides over the picture: the box of the scene, its axes, a grid under it, and the distance
 //! between two points that were clicked. They are painted over the picture, whatever hides them.
 
-use eframe::egui::{self, Align2, Color32, FontId, Painter, Pos2, Rect, Response, Sense, Ui, vec2};
+use egui::{self, Align2, Color32, FontId, Painter, Pos2, Rect, Response, Sense, Ui, vec2};
 use glam::{DMat4, DVec2, DVec3, DVec4};
 
 use super::{

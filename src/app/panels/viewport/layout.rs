@@ -1,6 +1,6 @@
 //! Where a picture goes in the window.
 
-use eframe::egui::{Rect, vec2};
+use egui::{Rect, vec2};
 
 /// All of `rect`, or the largest rectangle of the picture's aspect ratio in its middle, so that a
 /// picture from before a resize is not stretched.

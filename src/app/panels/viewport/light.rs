@@ -1,7 +1,7 @@
 //! The ball in the corner of the picture: it is lit from the direction of the preset's light, and a
 //! drag turns that light.
 
-use eframe::egui::{self, Color32, Mesh, Pos2, Rect, Sense, Stroke, Ui, Vec2, vec2};
+use egui::{self, Color32, Mesh, Pos2, Rect, Sense, Stroke, Ui, Vec2, vec2};
 use glam::{DQuat, DVec3};
 
 use crate::{

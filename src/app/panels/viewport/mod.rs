@@ -25,7 +25,7 @@ mod probe;
 
 use std::sync::Arc;
 
-use eframe::egui::{self, Align2, FontId, Rect, Response, Sense, Ui, vec2};
+use egui::{self, Align2, FontId, Rect, Response, Sense, Ui, vec2};
 
 use self::{
     compare::Compare,

@@ -1,7 +1,7 @@
 //! The legend of the overlays: what each shows and on how many pixels. An overlay that paints
 //! nothing has no line.
 
-use eframe::egui::{self, Color32, Pos2, Rect, RichText, Ui, pos2, vec2};
+use egui::{self, Color32, Pos2, Rect, RichText, Ui, pos2, vec2};
 
 use crate::{
     app::{

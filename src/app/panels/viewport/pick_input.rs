@@ -1,7 +1,7 @@
 //! Picking: a click on the model sets a point parameter, or adds a part to those that an effect
 //! changes.
 
-use eframe::egui::{Rect, Response};
+use egui::{Rect, Response};
 use glam::DVec2;
 
 use super::{
