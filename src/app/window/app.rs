@@ -10,18 +10,8 @@ use std::{
 use eframe::egui::{self, Ui, ViewportCommand};
 
 use super::{
-    apply,
-    command::Commands,
-    device::{self, Devices},
-    escape::escape,
-    fold::Fold,
-    input,
-    log::{Level, Log},
-    loss::LossFlag,
-    pointer_frames::PointerFrames,
-    state::{Clipboard, Closing, State},
+    escape::escape, fold::Fold, input, loss::LossFlag, pointer_frames::PointerFrames,
     typing::HeldTyping,
-    ui_frames::UiFrames,
 };
 use crate::{
     app::{
@@ -37,12 +27,19 @@ use crate::{
             state::FileState,
             watch::Watcher,
         },
-        jobs::{Jobs, finished::finish},
+        jobs::Jobs,
         panels::{Panels, log::toasts_ui},
         picture::{
             apply::verify_shown, precision::REST_S, screen::Screen, state::PictureState, tier_times,
         },
         settings::{keeper::Keeper, recents::Recents},
+        shell::{
+            command::Commands,
+            device::{self, Devices},
+            log::{Level, Log},
+            state::{Clipboard, Closing, State},
+            ui_frames::UiFrames,
+        },
         widgets::{panel::Panel, theme},
     },
     gpu::device::AdapterChoice,
@@ -66,6 +63,8 @@ pub struct Options {
     pub config: Option<PathBuf>,
     /// The file that messages of the log are appended to.
     pub log: Option<Arc<std::fs::File>>,
+    /// Set when the device is lost.
+    pub loss: LossFlag,
 }
 
 /// Most seconds between two frames of the window while a preset plays.
@@ -79,9 +78,10 @@ const PICTURE_BESIDE_PRESETS: f32 = 400.0;
 
 /// The whole window.
 pub struct App {
-    pub(super) state: State,
-    pub(super) panels: Panels,
-    commands: Commands,
+    pub(in crate::app) ctx: egui::Context,
+    pub(in crate::app) state: State,
+    pub(in crate::app) panels: Panels,
+    pub(in crate::app) commands: Commands,
     /// What was typed while a dialog opened.
     typing: HeldTyping,
     /// A text field had the focus when the last frame ended.
@@ -103,18 +103,6 @@ impl App {
     /// # Errors
     /// If the window has no wgpu device.
     pub fn new(cc: &eframe::CreationContext<'_>, options: Options) -> anyhow::Result<Self> {
-        Self::with_loss_flag(cc, options, LossFlag::default())
-    }
-
-    /// The same; sets `loss` when the device is lost.
-    ///
-    /// # Errors
-    /// If the window has no wgpu device.
-    pub fn with_loss_flag(
-        cc: &eframe::CreationContext<'_>,
-        options: Options,
-        loss: LossFlag,
-    ) -> anyhow::Result<Self> {
         host::shaders::choose(None);
         let ctx = &cc.egui_ctx;
         theme::apply(ctx);
@@ -175,6 +163,7 @@ impl App {
             .effect_values()
             .map_or_else(Vec::new, |folder| preset_file::saved_values(&folder));
         Ok(Self {
+            ctx: ctx.clone(),
             panels,
             state: State {
                 files: FileState {
@@ -213,27 +202,17 @@ impl App {
             was_typing: false,
             keeper,
             looked_for: (Recents::default(), false),
-            loss,
+            loss: options.loss,
             played_at_s: None,
             fold: Fold::default(),
             title: String::new(),
         })
     }
 
-    /// Logs a message and shows it as a toast.
-    pub fn notify(&mut self, level: Level, text: impl Into<String>) {
-        self.state.notify(level, text);
-    }
-
-    /// Carries out the commands that were sent.
-    fn apply(&mut self, ctx: &egui::Context) {
-        apply::apply_all(ctx, &mut self.state, &mut self.panels, &self.commands);
-    }
-
     /// Shows a panel and carries out its commands.
     fn panel_ui(&mut self, ui: &mut Ui, panel: impl FnOnce(&mut Panels) -> &mut dyn Panel) {
         panel(&mut self.panels).ui(ui, &self.state, &self.commands);
-        self.apply(ui.ctx());
+        self.apply();
     }
 
     /// Saves the preset for a new start of the window, once, and closes it.
@@ -257,7 +236,7 @@ impl App {
             } = &self.state;
             self.keeper
                 .close(settings, (session, picture.review.kept()), true);
-            super::page::stop("the device was lost");
+            crate::app::shell::page::stop("the device was lost");
         }
         self.state.closing.may_quit = true;
         ctx.send_viewport_cmd(ViewportCommand::Close);
@@ -512,7 +491,7 @@ impl App {
             .panels
             .viewport
             .interact(ui, &self.state, &self.commands);
-        self.apply(ui.ctx());
+        self.apply();
         self.panels
             .viewport
             .draw(ui.ctx(), &mut self.state, &interaction);
@@ -524,7 +503,7 @@ impl App {
         self.panels
             .viewport
             .show(ui, &self.state, &self.commands, interaction.response.rect);
-        self.apply(ui.ctx());
+        self.apply();
     }
 }
 
@@ -536,12 +515,12 @@ impl eframe::App for App {
             });
         }
         while let Some(done) = self.state.jobs.next() {
-            finish(ctx, &mut self.state, &mut self.panels, &self.commands, done);
-            self.apply(ctx);
+            done(self);
+            self.apply();
         }
         #[cfg(target_arch = "wasm32")]
-        super::page::send_waiting(&self.commands);
-        reload::take_changes(&mut self.state, &mut self.panels);
+        crate::app::shell::page::send_waiting(&self.commands);
+        reload::take_changes(self);
         if self.state.picture.screen.is_lost() {
             self.rescue(ctx);
         }
@@ -573,18 +552,11 @@ impl eframe::App for App {
             self.panels.trade.pause();
         }
         input::dropped_files(&ctx, &self.state, &self.commands);
-        self.apply(&ctx);
-        escape(
-            &ctx,
-            &self.state,
-            &mut self.panels,
-            self.was_typing,
-            &self.commands,
-        );
-        self.apply(&ctx);
+        self.apply();
+        escape(self, self.was_typing);
         if !self.panels.has_dialog() && !self.panels.settings.takes_key() {
             input::shortcuts(&ctx, &self.state, &mut self.typing, &self.commands);
-            self.apply(&ctx);
+            self.apply();
         }
         let is_awaited =
             self.panels.takes_text() || (self.state.open.settings && !self.panels.has_dialog());

@@ -1,8 +1,6 @@
-//! A tree of dot_runs in space: what the CPU asks which dots may show. It keeps a few too many,
-//! never one too few.
+//! Which dots may show, chosen by the CPU.
 
 use glam::{DMat4, DVec3, DVec4};
-use rstar::{AABB, RTree, RTreeObject, SelectionFunction};
 
 use crate::{
     effects::dots::Dots,
@@ -21,42 +19,20 @@ const ROUNDING: f64 = 1e-5;
 /// Rounding of its 1/w, in steps of the bits.
 const STEPS: u32 = 256;
 
-/// A stretch with its box.
-struct Leaf {
-    dot_run: u32,
-    corners: [[f64; 3]; 2],
-}
+/// Runs that follow one another on their lines and share a box.
+const BLOCK: usize = 32;
 
-impl RTreeObject for Leaf {
-    type Envelope = AABB<[f64; 3]>;
-
-    fn envelope(&self) -> Self::Envelope {
-        AABB::from_corners(self.corners[0], self.corners[1])
-    }
-}
-
-/// A tree of dot runs in space, which the CPU asks for the dots that may show. It keeps a few too
-/// many, never one too few.
-pub struct DotTree {
-    tree: RTree<Leaf>,
-    /// First and last dot of every stretch, in the scene before it is spun.
+/// The runs of dots with boxes around them, of which the CPU asks for the dots that may show. It
+/// keeps a few too many, never one too few.
+pub struct DotBoxes {
+    /// Lowest and highest corner of every [`BLOCK`] of runs.
+    boxes: Vec<[DVec3; 2]>,
+    /// First and last dot of every run, in the scene before it is spun.
     ends: Vec<[DVec3; 2]>,
 }
 
 /// The planes of a view in the scene, positive inside.
 struct Planes([DVec4; 6]);
-
-impl SelectionFunction<Leaf> for Planes {
-    fn should_unpack_parent(&self, envelope: &AABB<[f64; 3]>) -> bool {
-        let (low, high) = (DVec3::from(envelope.lower()), DVec3::from(envelope.upper()));
-        self.0.iter().all(|plane| {
-            // The corner that lies farthest inside.
-            let normal = plane.truncate();
-            let corner = DVec3::select(normal.cmpge(DVec3::ZERO), high, low);
-            normal.dot(corner) + plane.w >= -error_bound(plane, corner)
-        })
-    }
-}
 
 /// How far rounding may carry the distance of a point from a plane.
 fn error_bound(plane: &DVec4, point: DVec3) -> f64 {
@@ -79,16 +55,19 @@ impl Planes {
         ])
     }
 
-    /// May a point lie inside?
-    fn may_hold(&self, point: DVec3) -> bool {
-        self.0
-            .iter()
-            .all(|plane| plane.truncate().dot(point) + plane.w >= -error_bound(plane, point))
+    /// May a point between these corners lie inside?
+    fn may_hold(&self, [low, high]: [DVec3; 2]) -> bool {
+        self.0.iter().all(|plane| {
+            // The corner that lies farthest inside.
+            let normal = plane.truncate();
+            let corner = DVec3::select(normal.cmpge(DVec3::ZERO), high, low);
+            normal.dot(corner) + plane.w >= -error_bound(plane, corner)
+        })
     }
 }
 
-impl DotTree {
-    /// The tree of lines that stay where they are.
+impl DotBoxes {
+    /// The boxes of lines that stay where they are.
     pub fn new(scene: &Scene, lines: &Lines, dot_runs: &[DotRunRecord]) -> Self {
         let place = |draw: u32, vertex: u32| {
             let instance = &scene.instances[draw as usize];
@@ -114,12 +93,13 @@ impl DotTree {
             [at(0), at(dot_run.count - 1)]
         };
         let ends: Vec<[DVec3; 2]> = dot_runs.iter().map(ends_of).collect();
-        let leaf = |(i, [a, b]): (usize, &[DVec3; 2])| Leaf {
-            dot_run: i as u32,
-            corners: [a.min(*b).to_array(), a.max(*b).to_array()],
-        };
+        let boxes = ends.chunks(BLOCK).map(|block| {
+            let points = || block.iter().flatten().copied();
+            let [low, high] = [DVec3::min, DVec3::max].map(|end| points().reduce(end));
+            [low.unwrap_or_default(), high.unwrap_or_default()]
+        });
         Self {
-            tree: RTree::bulk_load(ends.iter().enumerate().map(leaf).collect()),
+            boxes: boxes.collect(),
             ends,
         }
     }
@@ -142,18 +122,20 @@ impl DotTree {
             (halved >> 23) as u32
         };
         let mut chosen = Vec::new();
-        for leaf in self.tree.locate_with_selection_function(Planes(planes.0)) {
-            let (dot_run, [a, b]) = (
-                &dot_runs[leaf.dot_run as usize],
-                self.ends[leaf.dot_run as usize],
-            );
+        let blocks = self.boxes.iter().zip(self.ends.chunks(BLOCK)).zip(0..);
+        let runs = blocks
+            .filter(|((corners, _), _)| planes.may_hold(**corners))
+            .flat_map(|((_, ends), block)| (block * BLOCK..).zip(ends));
+        for (index, &[a, b]) in runs.filter(|(_, [a, b])| planes.may_hold([a.min(*b), a.max(*b)])) {
+            let dot_run = &dot_runs[index];
             let stride = 1u32 << level(a).min(level(b));
             let first = dot_run.first.next_multiple_of(stride) - dot_run.first;
             for place in (first..dot_run.count).step_by(stride as usize) {
                 let at = a + (b - a) * (f64::from(place) / f64::from(dot_run.count.max(2) - 1));
                 let number = dot_run.first + place;
-                if (number == 0 || number.trailing_zeros() >= level(at)) && planes.may_hold(at) {
-                    chosen.push([leaf.dot_run, place]);
+                if (number == 0 || number.trailing_zeros() >= level(at)) && planes.may_hold([at; 2])
+                {
+                    chosen.push([index as u32, place]);
                 }
             }
         }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::{state::State, window::App};
+use super::app::App;
 use crate::{
     accuracy::RenderScale,
     app::{
@@ -12,6 +12,7 @@ use crate::{
             tier_times::{self, TierTime},
             timings::Occasion,
         },
+        shell::state::State,
     },
     gpu::Gpu,
     measure::ErrorReport,

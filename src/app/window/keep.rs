@@ -4,8 +4,11 @@ use std::path::Path;
 
 use eframe::egui;
 
-use super::{log::Level, state::State, window::App};
-use crate::app::settings::OpenPanels;
+use super::app::App;
+use crate::app::{
+    settings::OpenPanels,
+    shell::{log::Level, state::State},
+};
 
 impl App {
     /// Keeps settings and session, and looks for recent files that are gone.

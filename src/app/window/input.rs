@@ -2,37 +2,35 @@
 
 use std::path::PathBuf;
 
-use eframe::egui::{self, Event, KeyboardShortcut};
+use eframe::egui::{self, Event, Key, KeyboardShortcut};
 
-use super::{
-    action::Action,
-    command::{Command, Commands, RowCommand},
-    log::Level,
-    state::State,
-    typing::HeldTyping,
-};
+use super::typing::HeldTyping;
 use crate::app::{
-    files::{
-        command::{FileCommand, Purpose},
-        system_dialog,
-    },
+    files::{command::Purpose, system_dialog},
     settings::keymap::Keymap,
+    shell::{
+        action::Action,
+        apply::paste,
+        command::{Commands, RowCommand},
+        log::Level,
+        state::State,
+    },
+    widgets::form::is_searching,
 };
 
 /// Sends the actions whose shortcuts were pressed, in the order of the keys. Shortcuts without Ctrl
 /// do nothing while a widget has the focus or the camera flies; those with Ctrl, but for the
-/// palette's, do nothing while text is typed. What is typed after a key that opens a text field is
-/// held for it.
+/// palette's, do nothing while text is typed. A search keeps only what it can use itself. What is
+/// typed after a key that opens a text field is held for it.
 pub fn shortcuts(ctx: &egui::Context, state: &State, held: &mut HeldTyping, commands: &Commands) {
     let is_typing = ctx.text_edit_focused();
     let is_focused = ctx.egui_wants_keyboard_input();
+    let is_searching = is_searching(ctx);
     let is_flying = ctx.input(|i| i.pointer.secondary_down());
-    let is_allowed = |k: &KeyboardShortcut| {
-        if k.modifiers.command {
-            !is_typing
-        } else {
-            !is_focused && !is_flying
-        }
+    let is_allowed = |k: &KeyboardShortcut| match k.modifiers.command {
+        _ if is_searching => !edits_text(k),
+        true => !is_typing,
+        false => !is_focused && !is_flying,
     };
     let mut index = 0;
     while let Some(event) = ctx.input(|i| i.events.get(index).cloned()) {
@@ -50,12 +48,30 @@ pub fn shortcuts(ctx: &egui::Context, state: &State, held: &mut HeldTyping, comm
         };
         commands.perform(action);
         if action.takes_text() {
+            // What is typed from here on is for the field that opens.
+            ctx.memory_mut(|memory| memory.focused().map(|id| memory.surrender_focus(id)));
             held.hold_after(ctx, index, state.now_s);
         }
         ctx.input_mut(|i| drop(i.events.remove(index)));
     }
     if !is_typing {
         clipboard(ctx, state, commands);
+    }
+}
+
+/// Is it a key of a field for text: a letter, one that moves in the text, or with Ctrl one that
+/// selects, cuts, pastes or takes back?
+fn edits_text(
+    KeyboardShortcut {
+        modifiers,
+        logical_key: key,
+    }: &KeyboardShortcut,
+) -> bool {
+    use Key::*;
+    match key {
+        ArrowLeft | ArrowRight | ArrowUp | ArrowDown | Home | End | Backspace | Delete => true,
+        A | C | V | X | Y | Z if modifiers.command => true,
+        key => !(modifiers.command || modifiers.alt || (F1..=F35).contains(key)),
     }
 }
 
@@ -82,10 +98,10 @@ fn clipboard(ctx: &egui::Context, state: &State, commands: &Commands) {
     for event in ctx.input(|i| i.events.clone()) {
         match event {
             Event::Copy => match &state.clipboard.hovered_row {
-                Some((_, value)) => commands.send(Command::Row(RowCommand::Copy(value.clone()))),
+                Some((_, value)) => commands.row(RowCommand::Copy(value.clone())),
                 None => commands.perform(Action::CopyPreset),
             },
-            Event::Paste(text) => commands.send(Command::PasteText(text)),
+            Event::Paste(text) => commands.run(move |app| paste(app, &text)),
             _ => {}
         }
     }
@@ -122,15 +138,26 @@ pub fn open_given(mut dropped: Vec<PathBuf>, commands: &Commands) {
     };
     dropped.sort_by_key(rank);
     let Some(first) = dropped.first() else { return };
-    commands.send(Command::File(FileCommand::Open(
-        first.to_string_lossy().into_owned(),
-    )));
+    commands.open(first.to_string_lossy().into_owned());
     if dropped.len() > 1 {
         let name = first.file_name().unwrap_or_default().to_string_lossy();
         let text = format!(
             "{} files were dropped. One is opened at a time: {name}",
             dropped.len()
         );
-        commands.send(Command::Notify(Level::Info, text));
+        commands.notify(Level::Info, text);
+    }
+}
+
+/// Takes files that a page was given, which lie in its memory now.
+#[cfg(target_arch = "wasm32")]
+pub fn take_given(
+    app: &mut crate::app::App,
+    given: Result<crate::app::shell::page::Given, String>,
+) {
+    match given {
+        Ok(given) if given.is_export => crate::app::files::take_along::import(app),
+        Ok(given) => open_given(given.paths, &app.commands),
+        Err(error) => app.notify(Level::Error, error),
     }
 }

@@ -3,15 +3,14 @@
 use eframe::{egui, egui_wgpu};
 
 use super::{
-    device::wgpu_setup,
-    log::Level,
+    app::{App, Options},
     loss::LossFlag,
-    window::{App, Options},
 };
 use crate::{
     app::{
         files::recovery::recovery_path,
         settings::{WindowSize, keeper::window_size},
+        shell::{device::wgpu_setup, log::Level},
     },
     gpu::device::AdapterChoice,
 };
@@ -55,12 +54,13 @@ pub fn run(options: Options) -> anyhow::Result<()> {
         .map_or_else(WindowSize::default, window_size);
     for losses in 0..=MAX_LOSSES {
         let loss = LossFlag::default();
-        let (flag, opened) = (loss.clone(), options.clone());
+        let mut opened = options.clone();
+        opened.loss = loss.clone();
         let create = move |cc: &eframe::CreationContext<'_>| -> Result<
             Box<dyn eframe::App>,
             Box<dyn std::error::Error + Send + Sync>,
         > {
-            let mut app = App::with_loss_flag(cc, opened, flag)?;
+            let mut app = App::new(cc, opened)?;
             if losses > 0 {
                 app.notify(
                     Level::Warning,
