@@ -15,7 +15,7 @@ use crate::app::{
         state::State,
     },
     widgets::{
-        form::{field_ui, form_ui, is_entered, text_ui, words_ui},
+        form::{field_ui, form_ui, is_entered, search_ui, words_ui},
         icons::{Icon, icon_button},
         panel::{Panel, at_right, centered, performs},
         theme::{self, ThemeChoice},
@@ -87,8 +87,7 @@ impl SettingsWindow {
                 }
             });
         });
-        let name = "Search actions and keys";
-        let field = text_ui(ui, name, name, &mut self.search);
+        let field = search_ui(ui, &mut self.search, "Search actions and keys");
         if self.binding.is_none() {
             // Keys that are typed while the window is open go into the search.
             is_entered(ui, &field);
@@ -199,8 +198,6 @@ impl Panel for SettingsWindow {
             let height = (area.height() - 260.0).clamp(120.0, 480.0);
             self.keys_ui(ui, state, commands, height);
         });
-        // The key that opens it closes it, too; the search would keep it.
-        is_open &= self.takes_key() || !ui.input(|i| i.key_pressed(Key::F1));
         if !is_open {
             commands.perform(Action::Settings);
         }

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use eframe::egui::{self, Event, KeyboardShortcut};
+use eframe::egui::{self, Event, Key, KeyboardShortcut};
 
 use super::typing::HeldTyping;
 use crate::app::{
@@ -15,22 +15,22 @@ use crate::app::{
         log::Level,
         state::State,
     },
+    widgets::form::is_searching,
 };
 
 /// Sends the actions whose shortcuts were pressed, in the order of the keys. Shortcuts without Ctrl
 /// do nothing while a widget has the focus or the camera flies; those with Ctrl, but for the
-/// palette's, do nothing while text is typed. What is typed after a key that opens a text field is
-/// held for it.
+/// palette's, do nothing while text is typed. A search keeps only what it can use itself. What is
+/// typed after a key that opens a text field is held for it.
 pub fn shortcuts(ctx: &egui::Context, state: &State, held: &mut HeldTyping, commands: &Commands) {
     let is_typing = ctx.text_edit_focused();
     let is_focused = ctx.egui_wants_keyboard_input();
+    let is_searching = is_searching(ctx);
     let is_flying = ctx.input(|i| i.pointer.secondary_down());
-    let is_allowed = |k: &KeyboardShortcut| {
-        if k.modifiers.command {
-            !is_typing
-        } else {
-            !is_focused && !is_flying
-        }
+    let is_allowed = |k: &KeyboardShortcut| match k.modifiers.command {
+        _ if is_searching => !edits_text(k),
+        true => !is_typing,
+        false => !is_focused && !is_flying,
     };
     let mut index = 0;
     while let Some(event) = ctx.input(|i| i.events.get(index).cloned()) {
@@ -48,12 +48,30 @@ pub fn shortcuts(ctx: &egui::Context, state: &State, held: &mut HeldTyping, comm
         };
         commands.perform(action);
         if action.takes_text() {
+            // What is typed from here on is for the field that opens.
+            ctx.memory_mut(|memory| memory.focused().map(|id| memory.surrender_focus(id)));
             held.hold_after(ctx, index, state.now_s);
         }
         ctx.input_mut(|i| drop(i.events.remove(index)));
     }
     if !is_typing {
         clipboard(ctx, state, commands);
+    }
+}
+
+/// Is it a key of a field for text: a letter, one that moves in the text, or with Ctrl one that
+/// selects, cuts, pastes or takes back?
+fn edits_text(
+    KeyboardShortcut {
+        modifiers,
+        logical_key: key,
+    }: &KeyboardShortcut,
+) -> bool {
+    use Key::*;
+    match key {
+        ArrowLeft | ArrowRight | ArrowUp | ArrowDown | Home | End | Backspace | Delete => true,
+        A | C | V | X | Y | Z if modifiers.command => true,
+        key => !(modifiers.command || modifiers.alt || (F1..=F35).contains(key)),
     }
 }
 
