@@ -7,6 +7,7 @@ mod dependencies;
 mod effect_files;
 mod evaluator;
 mod features;
+mod formulas;
 mod layout;
 mod loader;
 mod meshlets;

@@ -266,7 +266,7 @@ fn members_with_a_mistake() {
 @choice(a, b) mode: u32, @range(0, 1, 0.5) «@when(mode, a¶b) x: f32, // no word
 @range(0, 1, 0.5) «@log x: f32, // above 0
 @range(1, 2, 1) «@log(2) x: f32, // @log
-@range(1, 2, 1) «@log x: u32, // @log
+@range(0, 2, 1) «@log x: u32, // @log
 @range(1, 2, 1) «@unit x: f32, // @unit
 @range(1, 2, 1) «@unit() x: f32, // @unit
 @range(1, 2, 1) «@unit(a, b) x: f32, // @unit

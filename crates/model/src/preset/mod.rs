@@ -22,13 +22,10 @@ mod toward;
 
 use std::{path::PathBuf, sync::Arc};
 
-use glam::{DMat4, DVec3};
+use glam::{DMat4, DVec3, DVec4};
 
 use crate::{
-    effects::{
-        Stack, read,
-        tonemap::{self, Tonemap},
-    },
+    effects::{Effect, Stack, Surface},
     math::rotation_y,
     scene::{
         Background, Bounds, Ground, Scene,
@@ -188,13 +185,20 @@ impl Preset {
         let mut backdrop = self.output.backdrop();
         for enabled in &self.evaluated_stack().0 {
             let original = enabled.effect.base.as_ref().unwrap_or(&enabled.effect);
-            if *original != *tonemap::EFFECT || enabled.on != Scope::default() {
+            if original != Effect::named("tonemap") || enabled.on != Scope::default() {
                 continue;
             }
-            let tonemap: Tonemap = read(&enabled.words);
-            if tonemap.background != 0 {
-                [backdrop.top, backdrop.bottom] =
-                    [backdrop.top, backdrop.bottom].map(|color| tonemap.shown_color(color));
+            if let Some(shown) = &enabled.effect.hooks.surface
+                && enabled.number("background") != 0.0
+            {
+                [backdrop.top, backdrop.bottom] = [backdrop.top, backdrop.bottom].map(|color| {
+                    let color = DVec4::from_array(color.map(f64::from));
+                    let seen = Surface {
+                        color,
+                        ..Surface::example(color.truncate(), 0)
+                    };
+                    shown(seen, &enabled.words).color.as_vec4().to_array()
+                });
             }
         }
         backdrop

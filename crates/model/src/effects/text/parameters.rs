@@ -53,7 +53,8 @@ pub struct NamedImage {
 /// without its default.
 pub fn read(text: &Text<'_>, tokens: &[Token<'_>], open: usize) -> Result<Parameters, EffectError> {
     let close = closing(tokens, open);
-    let (mut fields, mut defaults, mut ranges) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut fields, mut defaults, mut ranges) = (Vec::<Field>::new(), Vec::new(), Vec::new());
+    let mut conditions = Vec::new();
     let mut images: Vec<NamedImage> = Vec::new();
     let mut at = open + 1;
     while at < close {
@@ -67,7 +68,7 @@ pub fn read(text: &Text<'_>, tokens: &[Token<'_>], open: usize) -> Result<Parame
         let (name, types) = name_and_type(text, tokens, first, at, close)?;
         at = types.end + 1;
         check_name(text, name)?;
-        let mut names = fields.iter().map(|field: &Arc<Field>| &field.name);
+        let mut names = fields.iter().map(|field| &field.name);
         if names.any(|other| other == name.text)
             || images.iter().any(|image| image.member == name.text)
         {
@@ -95,15 +96,19 @@ pub fn read(text: &Text<'_>, tokens: &[Token<'_>], open: usize) -> Result<Parame
             defaults.push(images.len() as u32 - 1);
             continue;
         }
-        let (param, wgsl, numbers) =
-            member.param(&fields, &documentation(text.text, first.offset))?;
+        let (param, wgsl, numbers) = member.param(&documentation(text.text, first.offset))?;
         let offset = (4 * defaults.len()).next_multiple_of(4 * wgsl.words());
         defaults.resize(offset / 4 + wgsl.words(), 0);
         let field = Field::new(param, wgsl, offset);
         field
             .set(&mut defaults, &numbers)
             .map_err(|error| member.error(format!("the default of {}: {error}", name.text)))?;
-        fields.push(Arc::new(field));
+        fields.push(field);
+        let when = attributes.into_iter().find(|other| other.name == "when");
+        conditions.extend(when.map(|when| (fields.len() - 1, when)));
+    }
+    for (at, when) in conditions {
+        fields[at].param.when = Some(condition(text, &when, &fields)?);
     }
     if fields.is_empty() && images.is_empty() {
         return Err(text.error(
@@ -119,7 +124,7 @@ pub fn read(text: &Text<'_>, tokens: &[Token<'_>], open: usize) -> Result<Parame
     };
     defaults.resize(defaults.len().next_multiple_of(align), 0);
     Ok(Parameters {
-        fields,
+        fields: fields.into_iter().map(Arc::new).collect(),
         images,
         defaults,
         attributes: ranges,
@@ -330,13 +335,8 @@ impl<'a> Member<'a> {
             })
     }
 
-    /// The registry's entry, the WGSL type, and the components of the default. `known` are the
-    /// fields declared so far.
-    fn param(
-        &self,
-        known: &[Arc<Field>],
-        doc: &str,
-    ) -> Result<(Param, WgslType, Vec<f64>), EffectError> {
+    /// The registry's entry, the WGSL type, and the components of the default.
+    fn param(&self, doc: &str) -> Result<(Param, WgslType, Vec<f64>), EffectError> {
         let kind: String = self.kind.split_whitespace().collect();
         let (value_type, wgsl, default) = match kind.as_str() {
             "f32" => {
@@ -374,12 +374,12 @@ impl<'a> Member<'a> {
                 )));
             }
         };
-        let param = self.with_options(Param::new(self.name.text, doc, value_type), known)?;
+        let param = self.with_options(Param::new(self.name.text, doc, value_type))?;
         Ok((param, wgsl, default))
     }
 
     /// The parameter with what its other attributes say.
-    fn with_options(&self, mut param: Param, known: &[Arc<Field>]) -> Result<Param, EffectError> {
+    fn with_options(&self, mut param: Param) -> Result<Param, EffectError> {
         let value_type = param.value_type.clone();
         if self.attribute("range").is_some() {
             let (range, _) = self.range("@range(min, max, default)")?;
@@ -415,6 +415,19 @@ impl<'a> Member<'a> {
             )?;
             (param.hard, param.soft) = ([ends[0], ends[1]], soft);
         }
+        if let Some(soft) = self.attribute("soft") {
+            let ends = soft.numbers(self.text, (2, 2), "the ends of the sliders of a point")?;
+            let [low, high] = param.hard;
+            if value_type != ValueType::Point
+                || !(low <= ends[0] && ends[0] < ends[1] && ends[1] <= high)
+            {
+                return Err(soft.error(
+                    self.text,
+                    "@soft belongs to a point, and its range must be ascending and lie inside that of @hard",
+                ));
+            }
+            param.soft = [ends[0], ends[1]];
+        }
         if let Some(unit) = self.attribute("unit") {
             let [unit_text] = unit.arguments[..] else {
                 return Err(unit.error(self.text, "@unit takes one unit, for instance m or px"));
@@ -431,13 +444,32 @@ impl<'a> Member<'a> {
             param = param.unit(unit_text);
         }
         if let Some(log) = self.attribute("log") {
-            if value_type != ValueType::F32 || param.soft[0] <= 0.0 || !log.arguments.is_empty() {
+            let is_number = matches!(value_type, ValueType::F32 | ValueType::U32);
+            if !is_number || param.soft[0] <= 0.0 || !log.arguments.is_empty() {
                 return Err(log.error(
                     self.text,
-                    "@log belongs to an f32 whose @range begins above 0, and takes nothing",
+                    "@log belongs to an f32 or u32 whose @range begins above 0, and takes nothing",
                 ));
             }
             param = param.log(true);
+        }
+        for name in ["height", "depth"] {
+            let Some(attribute) = self.attribute(name) else {
+                continue;
+            };
+            if value_type != ValueType::F32
+                || param.unit.is_empty()
+                || !attribute.arguments.is_empty()
+            {
+                return Err(attribute.error(
+                    self.text,
+                    format!("@{name} belongs to an f32 with a @unit, and takes nothing"),
+                ));
+            }
+            (param.height, param.depth) = (
+                param.height || name == "height",
+                param.depth || name == "depth",
+            );
         }
         if let Some(default) = self.attribute("default")
             && !matches!(value_type, ValueType::Choice(_))
@@ -446,9 +478,6 @@ impl<'a> Member<'a> {
                 self.text,
                 "@default belongs to @choice; other widgets take the default themselves",
             ));
-        }
-        if let Some(when) = self.attribute("when") {
-            param.when = Some(self.condition(when, known)?);
         }
         Ok(param)
     }
@@ -566,45 +595,34 @@ impl<'a> Member<'a> {
             }
         }
     }
+}
 
-    /// `@when(mode, word, …)`.
-    fn condition(
-        &self,
-        when: &Attribute<'_>,
-        known: &[Arc<Field>],
-    ) -> Result<(String, Vec<String>), EffectError> {
-        let usage = "@when takes the name of a choice above and some of its words";
-        let Some((name, words)) = when
-            .arguments
-            .split_first()
-            .filter(|(_, words)| !words.is_empty())
-        else {
-            return Err(when.error(self.text, usage));
-        };
-        let choice = known.iter().find(|field| field.name == *name);
-        let Some((field, ValueType::Choice(allowed))) =
-            choice.map(|field| (field, &field.value_type))
-        else {
-            return Err(when.error(
-                self.text,
-                format!("{usage}; there is no choice {name} above"),
-            ));
-        };
-        if let Some(unknown) = words
-            .iter()
-            .find(|word| !allowed.iter().any(|known| known == *word))
-        {
-            return Err(when.error(
-                self.text,
-                format!(
-                    "{name} has no word {unknown}; it has {}",
-                    allowed.join(", ")
-                ),
-            ));
-        }
-        Ok((
-            field.name.clone(),
-            words.iter().map(|&word| word.into()).collect(),
-        ))
+/// `@when(mode, word, …)`.
+fn condition(
+    text: &Text<'_>,
+    when: &Attribute<'_>,
+    fields: &[Field],
+) -> Result<(String, Vec<String>), EffectError> {
+    let usage = "@when takes the name of a choice and some of its words";
+    let Some((name, words)) = when
+        .arguments
+        .split_first()
+        .filter(|(_, words)| !words.is_empty())
+    else {
+        return Err(when.error(text, usage));
+    };
+    let choice = fields.iter().find(|field| field.name == *name);
+    let Some(ValueType::Choice(allowed)) = choice.map(|field| &field.value_type) else {
+        return Err(when.error(text, format!("{usage}; there is no choice {name}")));
+    };
+    let is_unknown = |word: &&&str| !allowed.iter().any(|known| known == **word);
+    if let Some(unknown) = words.iter().find(is_unknown) {
+        let message = format!(
+            "{name} has no word {unknown}; it has {}",
+            allowed.join(", ")
+        );
+        return Err(when.error(text, message));
     }
+    let words = words.iter().map(|&word| word.into()).collect();
+    Ok(((*name).into(), words))
 }
