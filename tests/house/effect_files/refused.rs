@@ -265,6 +265,11 @@ fn members_with_a_mistake() {
 @choice(a, b) mode: u32, @range(0, 1, 0.5) «@when x: f32, // takes the name
 @choice(a, b) mode: u32, @range(0, 1, 0.5) «@when(mode, a¶b) x: f32, // no word
 @range(0, 1, 0.5) «@log x: f32, // above 0
+@range(0, 1, 0.5) y: f32, «@given(week) x: f32, // one of seconds
+@range(0, 1, 0.5) y: f32, «@given(seconds) x: u32, // is f32, not u32
+@range(0, 1, 0.5) y: f32, @given(seconds) «@unit(s) x: f32, // exclude
+@range(0, 1, 0.5) «@soft(0, 1) x: f32, // belongs to a point
+@range(0, 1, 0.5) «@height x: f32, // with a @unit
 @range(1, 2, 1) «@log(2) x: f32, // @log
 @range(0, 2, 1) «@log x: u32, // @log
 @range(1, 2, 1) «@unit x: f32, // @unit

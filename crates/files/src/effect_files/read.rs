@@ -194,6 +194,7 @@ fn read_anew(
         about: declaration.about.clone(),
         hooks: Hooks::default(),
         fields: fields.clone(),
+        given: declaration.parameters.given.clone(),
         defaults: declaration.parameters.defaults.clone(),
         wgsl_struct: EffectSource::unique(stem, declaration.struct_name),
         source: Some(source.clone()),

@@ -8,6 +8,7 @@ use std::{
 use base64::{Engine as _, engine::general_purpose::STANDARD};
 
 use super::{
+    given::GivenMember,
     hooks::{
         Hooks, ImageAt, LitEffect, PassEffect, SampleEffect, SampleHook, Slot, SurfaceEffect,
         SurfaceInput, VertexEffect, VertexHook,
@@ -31,6 +32,8 @@ pub struct Effect {
     pub about: String,
     pub hooks: Hooks,
     pub fields: Vec<Arc<Field>>,
+    /// What it is given beside its parameters.
+    pub given: Vec<GivenMember>,
     /// Parameter words with every default.
     pub defaults: Vec<u32>,
     /// Name of the WGSL struct.
@@ -189,6 +192,11 @@ impl Effect {
         passes.is_some_and(|hook| hook.kept().is_some())
     }
 
+    /// Does it move with the clock?
+    pub fn is_given_time(&self) -> bool {
+        self.given.iter().any(|member| member.given.is_of_clock())
+    }
+
     /// Is it the effect of a file, or an instance of one?
     pub const fn is_of_file(&self) -> bool {
         self.source.is_some()
@@ -226,14 +234,20 @@ impl Effect {
             .map_or(&[], |source| source.images.as_slice())
     }
 
-    /// Every member of its struct of parameters, in order: its fields, and its pictures by number.
+    /// Every member of its struct of parameters, in order: its fields, its pictures by number, and
+    /// what it is given.
     pub fn members(&self) -> Vec<Arc<Field>> {
         let number = |image: &ImageInput| {
             let param = Param::new(&image.name, "", ValueType::U32);
             Arc::new(Field::new(param, WgslType::U32, image.offset))
         };
+        let given = |member: &GivenMember| {
+            let param = Param::new(&member.name, "", ValueType::U32);
+            Arc::new(Field::new(param, member.given.wgsl(), member.offset))
+        };
         let mut members = self.fields.clone();
         members.extend(self.images().iter().map(number));
+        members.extend(self.given.iter().map(given));
         members.sort_by_key(|member| member.offset);
         members
     }

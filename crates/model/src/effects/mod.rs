@@ -38,6 +38,7 @@ for_each_in_rust!(modules);
 
 mod conflict;
 mod effect;
+pub mod given;
 pub mod hooks;
 pub mod image_file;
 mod list;

@@ -6,6 +6,7 @@ use super::{
     conflict::Conflict,
     dots, draw_order,
     effect::{Effect, read},
+    given::Given,
     glass::GlassDraws,
     hooks::{self, EarlierFrames, Hooks, Layers, Lighting, Picture, Pixel, Shape, Slot, Surface},
     points, shadow, xray,
@@ -108,6 +109,22 @@ impl Stack {
             }
         };
         &mut self.0[at]
+    }
+
+    /// The stack with the words of what its effects are given, where `words` has any.
+    #[must_use]
+    pub fn with_given(mut self, words: impl Fn(Given) -> Option<Vec<u32>>) -> Self {
+        for EnabledEffect {
+            effect, words: own, ..
+        } in &mut self.0
+        {
+            for member in &effect.given {
+                if let Some(words) = words(member.given) {
+                    own[member.offset / 4..][..words.len()].copy_from_slice(&words);
+                }
+            }
+        }
+        self
     }
 
     /// The stack for a picture of `factor` times as many pixels to a side: lengths in pixels scale

@@ -47,6 +47,7 @@ pub fn built_in(name: &str) -> Result<Effect, EffectError> {
         about: declaration.about.clone(),
         hooks: Hooks::default(),
         fields: declaration.parameters.fields.clone(),
+        given: declaration.parameters.given.clone(),
         defaults: declaration.parameters.defaults.clone(),
         wgsl_struct: declaration.struct_name.into(),
         source: None,

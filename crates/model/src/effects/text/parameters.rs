@@ -10,7 +10,10 @@ use super::{
     words,
 };
 use crate::{
-    effects::{EMBEDDED_IMAGE, constant_name},
+    effects::{
+        EMBEDDED_IMAGE, constant_name,
+        given::{Given, GivenMember},
+    },
     params::{Field, Param, ValueType, WgslType},
 };
 
@@ -29,6 +32,8 @@ pub struct Parameters {
     pub fields: Vec<Arc<Field>>,
     /// Members that are pictures, in order.
     pub images: Vec<NamedImage>,
+    /// Members that the lab fills in.
+    pub given: Vec<GivenMember>,
     /// Parameter words with every default.
     pub defaults: Vec<u32>,
     /// Byte ranges of attributes, which WGSL does not know.
@@ -55,7 +60,7 @@ pub fn read(text: &Text<'_>, tokens: &[Token<'_>], open: usize) -> Result<Parame
     let close = closing(tokens, open);
     let (mut fields, mut defaults, mut ranges) = (Vec::<Field>::new(), Vec::new(), Vec::new());
     let mut conditions = Vec::new();
-    let mut images: Vec<NamedImage> = Vec::new();
+    let (mut images, mut given) = (Vec::<NamedImage>::new(), Vec::<GivenMember>::new());
     let mut at = open + 1;
     while at < close {
         let first = tokens[at];
@@ -71,6 +76,7 @@ pub fn read(text: &Text<'_>, tokens: &[Token<'_>], open: usize) -> Result<Parame
         let mut names = fields.iter().map(|field| &field.name);
         if names.any(|other| other == name.text)
             || images.iter().any(|image| image.member == name.text)
+            || given.iter().any(|member| member.name == name.text)
         {
             let message = format!("the parameter {} is declared twice", name.text);
             return Err(text.at(name, message));
@@ -96,6 +102,18 @@ pub fn read(text: &Text<'_>, tokens: &[Token<'_>], open: usize) -> Result<Parame
             defaults.push(images.len() as u32 - 1);
             continue;
         }
+        if let Some(attribute) = member.attribute("given") {
+            let found = member.given(attribute)?;
+            let words = found.wgsl().words();
+            let offset = (4 * defaults.len()).next_multiple_of(4 * words);
+            defaults.resize(offset / 4 + words, 0);
+            given.push(GivenMember {
+                name: name.text.into(),
+                offset,
+                given: found,
+            });
+            continue;
+        }
         let (param, wgsl, numbers) = member.param(&documentation(text.text, first.offset))?;
         let offset = (4 * defaults.len()).next_multiple_of(4 * wgsl.words());
         defaults.resize(offset / 4 + wgsl.words(), 0);
@@ -110,22 +128,23 @@ pub fn read(text: &Text<'_>, tokens: &[Token<'_>], open: usize) -> Result<Parame
     for (at, when) in conditions {
         fields[at].param.when = Some(condition(text, &when, &fields)?);
     }
-    if fields.is_empty() && images.is_empty() {
+    if fields.is_empty() && images.is_empty() && given.is_empty() {
         return Err(text.error(
             tokens[open].offset,
             1,
             "the struct of an effect's parameters needs at least one member",
         ));
     }
-    let align = if fields.iter().any(|field| field.wgsl == WgslType::Vec4F32) {
-        4
-    } else {
-        1
-    };
+    let has_vectors = fields.iter().any(|field| field.wgsl == WgslType::Vec4F32)
+        || given
+            .iter()
+            .any(|member| member.given.wgsl() == WgslType::Vec4F32);
+    let align = if has_vectors { 4 } else { 1 };
     defaults.resize(defaults.len().next_multiple_of(align), 0);
     Ok(Parameters {
         fields: fields.into_iter().map(Arc::new).collect(),
         images,
+        given,
         defaults,
         attributes: ranges,
     })
@@ -333,6 +352,26 @@ impl<'a> Member<'a> {
                     "@image takes the name of a PNG in quotation marks, for instance @image(\"paper.png\")",
                 )
             })
+    }
+
+    /// What the member is given.
+    fn given(&self, given: &Attribute<'a>) -> Result<Given, EffectError> {
+        if let Some(other) = self.attributes.iter().find(|other| other.name != "given") {
+            let message = format!("@{} and @given exclude each other", other.name);
+            return Err(other.error(self.text, message));
+        }
+        let mut all = Given::ALL.into_iter();
+        let Some(found) = all.find(|known| given.arguments == [known.name()]) else {
+            let names = Given::ALL.map(Given::name).join(", ");
+            return Err(given.error(self.text, format!("@given takes one of {names}")));
+        };
+        let kind: String = self.kind.split_whitespace().collect();
+        let wanted = found.wgsl().name();
+        if kind != wanted && !(kind == "vec4f" && wanted == "vec4<f32>") {
+            let message = format!("@given({}) is {wanted}, not {kind}", found.name());
+            return Err(given.error(self.text, message));
+        }
+        Ok(found)
     }
 
     /// The registry's entry, the WGSL type, and the components of the default.
