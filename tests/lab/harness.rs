@@ -307,12 +307,12 @@ fn built(
 ) -> Lab {
     let options = Options {
         open: open.map(str::to_owned),
-        opened: None,
         adapter,
         devices,
         folders,
         config,
         log,
+        ..Options::default()
     };
     let mut theme = ThemePreference::default();
     let harness = Harness::builder()

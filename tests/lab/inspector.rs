@@ -229,7 +229,6 @@ fn an_effect_is_added_by_a_button_with_values_that_show_and_the_folders_are_with
 
 #[test]
 fn clips_are_chosen_held_and_blended_in_their_folder() {
-    draw_pictures();
     let Some(mut lab) = lab("builtin:tentacle?tess=3") else {
         return;
     };

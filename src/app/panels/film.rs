@@ -8,13 +8,10 @@ use eframe::egui::{self, Button, Key, Label, Ui, vec2};
 use crate::{
     accuracy::RenderScale,
     app::{
+        files::apply::export_film,
         jobs::film::{Failure, Finished, Format, Progress, Request, time_left_text},
         settings::film::FilmSettings,
-        shell::{
-            command::{Command, Commands},
-            log::Level,
-            state::State,
-        },
+        shell::{command::Commands, log::Level, state::State},
         widgets::{
             form::{field_ui, form_ui, menu_ui, number_ui, text_ui, words_ui},
             panel::{Panel, at_right, centered, main_button},
@@ -280,10 +277,8 @@ impl FilmPanel {
         self.last = form.settings(clock);
         let (request, progress) = (form.request(replaces), Arc::<Progress>::default());
         self.failure = None;
-        commands.send(Command::ExportFilm(
-            Box::new(request.clone()),
-            progress.clone(),
-        ));
+        let asked = (request.clone(), progress.clone());
+        commands.run(|app| export_film(app, asked.0, asked.1));
         self.running = Some((request, progress));
     }
 

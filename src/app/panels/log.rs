@@ -4,7 +4,7 @@ use eframe::egui::{self, Rect, RichText, Ui};
 
 use crate::app::{
     shell::{
-        command::{Command, Commands},
+        command::Commands,
         log::{Entry, Log, times},
         state::State,
     },
@@ -25,7 +25,7 @@ impl Panel for LogPanel {
             ui.label(theme::heading("Log"));
             at_right(ui, |ui| {
                 if icon_button(ui, Icon::Cross, "Clear the log").clicked() {
-                    commands.send(Command::ClearLog);
+                    commands.run(|app| app.state.log.clear());
                 }
                 if ui
                     .small_button("Copy")

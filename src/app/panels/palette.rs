@@ -8,7 +8,7 @@ use eframe::egui::{
 use crate::{
     app::{
         editing::session::Session,
-        palette::{Choice, Entry, MAX_LISTED, commands, entries, rank},
+        palette::{Choice, Entry, MAX_LISTED, entries, perform, rank},
         shell::{action::Action, command::Commands, state::State},
         widgets::{
             panel::{Panel, at_right, describe_chosen},
@@ -86,9 +86,7 @@ impl Palette {
         self.recent.retain(|text| *text != entry.text);
         self.recent.insert(0, entry.text);
         self.recent.truncate(MAX_RECENT);
-        commands(entry.choice)
-            .into_iter()
-            .for_each(|command| to.send(command));
+        perform(entry.choice, to);
     }
 }
 

@@ -7,6 +7,7 @@ use eframe::egui::{self, RichText, Sense, Ui, vec2};
 
 use crate::{
     app::{
+        editing::apply::recall_seed,
         editing::randomize::Seeded,
         picture::{
             cells::{self, CellOf, CellResult, Cells},
@@ -14,7 +15,7 @@ use crate::{
         },
         shell::{
             action::Action,
-            command::{Command, Commands},
+            command::{Commands, Parameter},
             state::State,
         },
         widgets::{
@@ -87,10 +88,11 @@ impl RandomizePanel {
         };
         self.drawing = Some(next.seed);
         let cells = vec![(CellOf::Seed(next.seed), inputs(state, requested, next))];
-        commands.send(Command::DrawCells(Cells {
+        let cells = Cells {
             cells,
             is_canceled: Arc::default(),
-        }));
+        };
+        commands.run(|app| app.state.draw_cells(cells));
     }
 }
 
@@ -166,10 +168,18 @@ fn controls_ui(ui: &mut Ui, state: &State, commands: &Commands) {
         let hint = "How far a value may go from where it is, in percent of its slider. At 100 % it may go anywhere on it.";
         let slider = ui.add(slider).on_hover_text(hint);
         if slider.accessible_name("Vary by percent").changed() {
-            commands.send(Command::VaryBy(percent));
+            commands.run(move |app| app.state.session.randomizer.vary_percent = percent.clamp(1.0, 100.0));
         }
     });
     ui.add_space(theme::HALF);
+}
+
+/// Keeps a parameter as it is when the effects are randomized, or lets it vary.
+fn lock(commands: &Commands, (effect, field): Parameter, is_locked: bool) {
+    commands.run(move |app| {
+        let randomizer = &mut app.state.session.randomizer;
+        randomizer.lock(&effect, &field, is_locked);
+    });
 }
 
 /// A box for each parameter of an effect: with a mark, it varies.
@@ -199,12 +209,9 @@ fn locks_ui(ui: &mut Ui, state: &State, commands: &Commands, enabled: &EnabledEf
             .accessible_name(format!("Vary {}", effect.name))
             .clicked()
         {
-            shown.iter().for_each(|field| {
-                commands.send(Command::Lock(
-                    (effect.clone(), (*field).clone()),
-                    !all_locked,
-                ))
-            });
+            shown
+                .iter()
+                .for_each(|field| lock(commands, (effect.clone(), (*field).clone()), !all_locked));
         }
         for field in shown {
             let is_animated = state
@@ -223,7 +230,7 @@ fn locks_ui(ui: &mut Ui, state: &State, commands: &Commands, enabled: &EnabledEf
                 .accessible_name(format!("Vary {}.{}", effect.name, field.name))
                 .clicked()
             {
-                commands.send(Command::Lock((effect.clone(), field.clone()), !varies));
+                lock(commands, (effect.clone(), field.clone()), !varies);
             }
         }
     });
@@ -245,7 +252,8 @@ impl RandomizePanel {
             for Seeded { seed, stack } in state.session.randomizer.seeds() {
                 let is_current = state.session.preset().stack.0 == stack.0;
                 if seed_ui(ui, *seed, self.pictures.get(seed), is_current).clicked() {
-                    commands.send(Command::RecallSeed(*seed));
+                    let seed = *seed;
+                    commands.step(move |app| recall_seed(&mut app.state, seed));
                 }
             }
         });

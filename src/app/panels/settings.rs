@@ -4,14 +4,18 @@
 use eframe::egui::{self, Button, Event, Key, Label, RichText, Ui, vec2};
 
 use crate::app::{
-    settings::{SCALES, keymap},
+    settings::{
+        SCALES,
+        keymap::{self, Keymap},
+    },
     shell::{
         action::{Action, POINTER, actions, shortcut_text},
-        command::{Command, Commands, SettingsCommand, Toggle},
+        command::Commands,
+        log::Level,
         state::State,
     },
     widgets::{
-        form::{field_ui, form_ui, is_entered, text_ui, words_ui},
+        form::{field_ui, form_ui, is_entered, search_ui, words_ui},
         icons::{Icon, icon_button},
         panel::{Panel, at_right, centered, performs},
         theme::{self, ThemeChoice},
@@ -32,8 +36,16 @@ impl SettingsWindow {
         self.binding.is_some()
     }
 
-    fn send(commands: &Commands, command: SettingsCommand) {
-        commands.send(Command::Settings(command));
+    /// Changes the keys; a key that belongs to another action is refused.
+    fn change(
+        commands: &Commands,
+        change: impl FnOnce(&mut Keymap) -> Result<(), String> + 'static,
+    ) {
+        commands.run(|app| {
+            if let Err(refused) = change(&mut app.state.settings.keys) {
+                app.notify(Level::Warning, refused);
+            }
+        });
     }
 
     /// Takes the key that is pressed for the action that waits for one. Escape ends the waiting.
@@ -58,10 +70,8 @@ impl SettingsWindow {
         };
         self.binding = None;
         if key != Key::Escape {
-            Self::send(
-                commands,
-                SettingsCommand::Bind(action, Some(keymap::pressed(key, modifiers))),
-            );
+            let shortcut = keymap::pressed(key, modifiers);
+            Self::change(commands, move |keys| keys.bind(action, shortcut));
         }
     }
 
@@ -73,12 +83,11 @@ impl SettingsWindow {
                 let reset = ui.button("Reset all");
                 let hint = "Give every action its own keys again";
                 if reset.on_hover_text(hint).clicked() {
-                    Self::send(commands, SettingsCommand::ResetAllKeys);
+                    commands.run(|app| app.state.settings.keys.reset_all());
                 }
             });
         });
-        let name = "Search actions and keys";
-        let field = text_ui(ui, name, name, &mut self.search);
+        let field = search_ui(ui, &mut self.search, "Search actions and keys");
         if self.binding.is_none() {
             // Keys that are typed while the window is open go into the search.
             is_entered(ui, &field);
@@ -148,12 +157,12 @@ impl SettingsWindow {
             icon_button(ui, Icon::Cross, &format!("No key for {label}"))
         });
         if clear.inner.clicked() {
-            Self::send(commands, SettingsCommand::Bind(action, None));
+            commands.run(move |app| app.state.settings.keys.clear(action));
         }
         if state.settings.keys.is_bound(action)
             && icon_button(ui, Icon::Reset, &format!("Reset keys of {label}")).clicked()
         {
-            Self::send(commands, SettingsCommand::ResetKeys(action));
+            Self::change(commands, move |keys| keys.reset(action));
         }
         if let Some(value) = value_text(action, state) {
             at_right(ui, |ui| ui.label(theme::weak(value)));
@@ -177,7 +186,8 @@ impl Panel for SettingsWindow {
                     let mut theme = state.settings.theme;
                     let themes = ThemeChoice::ALL.map(|choice| (choice, choice.label(), ""));
                     if words_ui(ui, "", &mut theme, themes) {
-                        Self::send(commands, SettingsCommand::Theme(theme));
+                        commands
+                            .run(move |app| app.change_settings(|settings| settings.theme = theme));
                     }
                 });
                 field_ui(ui, "Texts and controls", "", |ui| {
@@ -188,10 +198,8 @@ impl Panel for SettingsWindow {
             let height = (area.height() - 260.0).clamp(120.0, 480.0);
             self.keys_ui(ui, state, commands, height);
         });
-        // The key that opens it closes it, too; the search would keep it.
-        is_open &= self.takes_key() || !ui.input(|i| i.key_pressed(Key::F1));
         if !is_open {
-            commands.send(Command::Toggle(Toggle::Settings));
+            commands.perform(Action::Settings);
         }
     }
 }

@@ -10,14 +10,12 @@ use eframe::egui::{self, RichText, Sense, Ui, vec2};
 
 use crate::{
     app::{
+        editing::apply::set_values,
         picture::{
             cells::{self, CellOf, CellResult, Cells},
             screen::Inputs,
         },
-        shell::{
-            command::{Command, Commands},
-            state::State,
-        },
+        shell::{command::Commands, state::State},
         widgets::{
             form::{menu_ui, number_ui},
             panel::{Panel, describe, main_button, picture_ui, window},
@@ -226,10 +224,11 @@ impl SweepPanel {
         };
         let is_canceled = Arc::new(AtomicBool::new(false));
         let cells = sheet.cells.iter().enumerate().map(cell).collect();
-        commands.send(Command::DrawCells(Cells {
+        let cells = Cells {
             cells,
             is_canceled: is_canceled.clone(),
-        }));
+        };
+        commands.run(|app| app.state.draw_cells(cells));
         let captions = sheet.cells.iter().map(|cell| DrawnCell {
             caption: cell.caption(),
             values: cell.values.clone(),
@@ -407,7 +406,8 @@ fn sheet_ui(ui: &mut Ui, drawn: &Drawn, state: &State, commands: &Commands, heig
                 .show(ui, |ui| {
                     for (index, cell) in drawn.cells.iter().enumerate() {
                         if cell_ui(ui, cell, vec2(width, width * aspect)).clicked() {
-                            commands.send(Command::SetValues(cell.values.clone()));
+                            let values = cell.values.clone();
+                            commands.step(move |app| set_values(&mut app.state, &values));
                         }
                         if (index + 1) % drawn.columns == 0 {
                             ui.end_row();

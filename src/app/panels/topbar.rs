@@ -6,16 +6,11 @@ use eframe::egui::{self, Align, Layout, RichText, Sense, Ui, vec2};
 
 use super::anti_aliasing::anti_aliasing_ui;
 use crate::app::{
-    files::command::FileCommand,
     picture::{
         measured::{error_line, time_line},
         verification::Progress,
     },
-    shell::{
-        action::Action,
-        command::{Command, Commands, SettingsCommand},
-        state::State,
-    },
+    shell::{action::Action, command::Commands, state::State},
     trade::pace::about,
     widgets::{
         fields::dot,
@@ -190,9 +185,7 @@ fn recents_ui(ui: &mut Ui, state: &State, commands: &Commands) {
             .accessible_name(format!("Recent {name}"))
             .clicked()
         {
-            commands.send(Command::File(FileCommand::Open(
-                path.to_string_lossy().into_owned(),
-            )));
+            commands.open(path.to_string_lossy().into_owned());
             ui.close();
         }
     }
@@ -210,7 +203,7 @@ fn looks_ui(ui: &mut Ui, chosen: ThemeChoice, commands: &Commands) {
         let themes = ThemeChoice::ALL.map(|choice| (choice, choice.label(), ""));
         let mut theme = chosen;
         if words_ui(ui, "", &mut theme, themes) {
-            commands.send(Command::Settings(SettingsCommand::Theme(theme)));
+            commands.run(move |app| app.change_settings(|settings| settings.theme = theme));
             ui.close();
         }
         ui.separator();
@@ -348,7 +341,7 @@ fn verifying_ui(ui: &mut Ui, progress: &Progress, commands: &Commands) {
         .on_hover_text("Stop verifying")
         .accessible_name("Cancel verifying");
     if cancel.clicked() {
-        commands.send(Command::CancelVerify);
+        commands.run(|app| app.state.picture.verification.cancel());
     }
     let text = RichText::new(format!("{} left", about(progress.left_s))).size(11.0);
     let bar = egui::ProgressBar::new(progress.fraction as f32)

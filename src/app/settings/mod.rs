@@ -2,7 +2,6 @@
 //! (`session.toml`), both in the folder of the user's configuration.
 
 pub mod browsing;
-mod change;
 pub mod film;
 pub mod keeper;
 pub mod keymap;

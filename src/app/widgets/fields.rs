@@ -17,7 +17,7 @@ use crate::{
     app::{
         editing::key_id::Keying,
         shell::{
-            command::{Command, Commands, Edit, Parameter, RowCommand},
+            command::{Commands, Edit, Parameter, RowCommand},
             log::Level,
         },
     },
@@ -205,13 +205,11 @@ pub fn row_ui(ui: &mut Ui, commands: &Commands, row: &Row, value: &Value) {
     }
     reveal::row(ui, &row.path, rect);
     if ui.rect_contains_pointer(rect) {
-        commands.send(Command::HoverRow {
-            path: row.path.clone(),
-            value: row.written(value),
-        });
+        let hovered = Some((row.path.clone(), row.written(value)));
+        commands.run(|app| app.state.clipboard.hovered_row = hovered);
     }
     if let Some(command) = command {
-        commands.send(Command::Row(command));
+        commands.row(command);
     }
     // A row command ends the step of undo that an edit continues, so the edit comes last.
     if let Some(value) = changed {
@@ -430,7 +428,7 @@ fn say(commands: &Commands, row: &Row, said: Option<String>) {
             row.param.allowed(),
             spaced(&row.param.unit)
         );
-        commands.send(Command::Notify(Level::Warning, text));
+        commands.notify(Level::Warning, text);
     }
 }
 

@@ -1,11 +1,10 @@
 //! Random expressions on integers, against direct evaluation.
 
-use proptest::prelude::*;
 use rasterlab::evaluator::{NoHost, Word};
+use rasterlab_fuzz::stress::scenes::{Rng, for_seeds};
 
 use super::common::program;
 
-#[derive(Clone, Debug)]
 enum Expr {
     Constant(i32),
     /// Argument 0 to 2.
@@ -78,42 +77,47 @@ impl Expr {
     }
 }
 
-fn number() -> impl Strategy<Value = i32> {
-    prop_oneof![any::<i32>(), -3..40, Just(i32::MIN), Just(i32::MAX)]
+fn number(rng: &mut Rng) -> i32 {
+    match rng.between(0, 4) {
+        0 => rng.next_u32().cast_signed(),
+        1 => rng.between(-3, 40),
+        2 => i32::MIN,
+        _ => i32::MAX,
+    }
 }
 
-fn tree() -> impl Strategy<Value = Expr> {
-    let leaf = prop_oneof![
-        number().prop_map(Expr::Constant),
-        (0..3usize).prop_map(Expr::Argument)
-    ];
-    leaf.prop_recursive(6, 60, 3, |inner| {
-        let boxed = inner.prop_map(Box::new).boxed();
-        prop_oneof![
-            boxed.clone().prop_map(Expr::Negate),
-            boxed.clone().prop_map(Expr::Not),
-            (
-                prop::sample::select(OPERATORS.as_slice()),
-                boxed.clone(),
-                boxed.clone()
-            )
-                .prop_map(|(op, a, b)| Expr::Binary(op, a, b)),
-            (boxed.clone(), boxed.clone(), boxed).prop_map(|(a, b, c)| Expr::Select(a, b, c)),
-        ]
-    })
-}
-
-proptest! {
-    #![proptest_config(ProptestConfig { cases: std::env::var("PROPTEST_CASES").ok().and_then(|cases| cases.parse().ok()).unwrap_or(256), failure_persistence: None, ..ProptestConfig::default() })]
-
-    #[test]
-    fn expressions(tree in tree(), inputs in prop::collection::vec([number(), number(), number()], 8)) {
-        let source = format!("var<private> zero: u32; fn f(a: i32, b: i32, c: i32) -> i32 {{ return {}; }}", tree.text());
-        let program = program(&source, "f");
-        let mut machine = program.machine();
-        for arguments in inputs {
-            let given = machine.call(&arguments.map(Word::from_i32), &mut NoHost).expect("no loops")[0].to_i32();
-            prop_assert_eq!(given, tree.value(arguments));
+/// An expression at most so deep.
+fn tree(rng: &mut Rng, depth: u32) -> Expr {
+    let kind = if depth == 0 { 0 } else { rng.between(0, 6) };
+    let inner = |rng: &mut Rng| Box::new(tree(rng, depth - 1));
+    match kind {
+        0 if rng.between(0, 2) == 0 => Expr::Constant(number(rng)),
+        0 => Expr::Argument(rng.between(0, 3) as usize),
+        1 => Expr::Negate(inner(rng)),
+        2 => Expr::Not(inner(rng)),
+        3 => Expr::Select(inner(rng), inner(rng), inner(rng)),
+        _ => {
+            let (a, b) = (inner(rng), inner(rng));
+            Expr::Binary(OPERATORS[rng.between(0, 12) as usize], a, b)
         }
     }
+}
+
+#[test]
+fn expressions() {
+    for_seeds(256, |rng| {
+        let tree = tree(rng, 6);
+        let source = format!(
+            "var<private> zero: u32; fn f(a: i32, b: i32, c: i32) -> i32 {{ return {}; }}",
+            tree.text()
+        );
+        let program = program(&source, "f");
+        let mut machine = program.machine();
+        for _ in 0..8 {
+            let arguments = [0; 3].map(|_| number(rng));
+            let given = machine.call(&arguments.map(Word::from_i32), &mut NoHost);
+            let given = given.expect("no loops")[0].to_i32();
+            assert_eq!(given, tree.value(arguments), "{source} at {arguments:?}");
+        }
+    });
 }

@@ -1,7 +1,7 @@
 //! Random programs on integers, against direct execution.
 
-use proptest::prelude::*;
 use rasterlab::evaluator::{NoHost, Word};
+use rasterlab_fuzz::stress::scenes::for_seeds;
 
 use super::common::{Random, program};
 
@@ -399,26 +399,40 @@ impl Generator<'_> {
     }
 }
 
-proptest! {
-    #![proptest_config(ProptestConfig { cases: std::env::var("PROPTEST_CASES").ok().and_then(|cases| cases.parse().ok()).unwrap_or(256), failure_persistence: None, ..ProptestConfig::default() })]
-
-    #[test]
-    fn statements(seed in any::<u64>()) {
-        let mut random = Random(seed);
-        let mut generator = Generator { random: &mut random, names: 0, budget: 40 };
+#[test]
+fn statements() {
+    for_seeds(256, |rng| {
+        let mut random = Random(u64::from(rng.next_u32()) << 32 | u64::from(rng.next_u32()));
+        let mut generator = Generator {
+            random: &mut random,
+            names: 0,
+            budget: 40,
+        };
         let (body, run) = generator.block(0, &mut Vec::new());
-        let source = format!("{PRELUDE}\nfn f(a: vec4i, b: vec4i) -> vec4i {{\nvar s: S;\ns.v = a;\nvar w = b;\n{body}return {RESULT};\n}}\n");
+        let source = format!(
+            "{PRELUDE}\nfn f(a: vec4i, b: vec4i) -> vec4i {{\nvar s: S;\ns.v = a;\nvar w = b;\n{body}return {RESULT};\n}}\n"
+        );
         let program = program(&source, "f");
         let mut machine = program.machine();
         for _ in 0..4 {
-            let arguments: Vec<i32> = (0..8).map(|_| random.bits() as i32 >> random.u32(30)).collect();
-            let mut state = State { g: [1, 2, 3, 4], ..State::default() };
+            let arguments: Vec<i32> = (0..8)
+                .map(|_| random.bits() as i32 >> random.u32(30))
+                .collect();
+            let mut state = State {
+                g: [1, 2, 3, 4],
+                ..State::default()
+            };
             state.s.v.copy_from_slice(&arguments[..4]);
             state.w.copy_from_slice(&arguments[4..]);
-            let expected = if run(&mut state) { state.w } else { result(&state) };
+            let expected = if run(&mut state) {
+                state.w
+            } else {
+                result(&state)
+            };
             let words: Vec<Word> = arguments.iter().map(|&x| Word::from_i32(x)).collect();
-            let given: Vec<i32> = machine.call(&words, &mut NoHost).expect("it ends").iter().map(|word| word.to_i32()).collect();
-            prop_assert_eq!(given, expected, "{} at {:?}", source, arguments);
+            let given = machine.call(&words, &mut NoHost).expect("it ends");
+            let given: Vec<i32> = given.iter().map(|word| word.to_i32()).collect();
+            assert_eq!(given, expected, "{source} at {arguments:?}");
         }
-    }
+    });
 }

@@ -103,7 +103,7 @@ mod page {
         files().retain(|path, _| !path.starts_with(folder));
     }
 
-    fn found(path: &Path) -> io::Result<Arc<[u8]>> {
+    fn read_kept(path: &Path) -> io::Result<Arc<[u8]>> {
         let found = files().get(path).cloned();
         found.ok_or_else(|| io::Error::new(ErrorKind::NotFound, "the page has no such file"))
     }
@@ -137,11 +137,11 @@ mod page {
     }
 
     pub fn open(path: &Path) -> io::Result<File> {
-        Ok(File(Arc::new(Mutex::new(Cursor::new(found(path)?)))))
+        Ok(File(Arc::new(Mutex::new(Cursor::new(read_kept(path)?)))))
     }
 
     pub fn size_of(path: &Path) -> io::Result<Option<u64>> {
-        Ok(Some(found(path)?.len() as u64))
+        Ok(Some(read_kept(path)?.len() as u64))
     }
 
     pub fn exists(path: &Path) -> bool {
@@ -158,7 +158,7 @@ mod page {
     }
 
     pub fn read(path: &Path) -> io::Result<Vec<u8>> {
-        Ok(found(path)?.to_vec())
+        Ok(read_kept(path)?.to_vec())
     }
 
     pub fn read_to_string(path: &Path) -> io::Result<String> {

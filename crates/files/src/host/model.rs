@@ -35,10 +35,6 @@ pub fn load_within(path: &Path, budget: MemoryBudget) -> Result<Scene, LoadError
 /// Loads a model file with a loader of its format. Only files in its folder and below are read.
 ///
 /// Within [`Work`](crate::work::Work) it counts its bytes, and unwinds where that was canceled.
-///
-/// # Errors
-/// If a file cannot be read, is malformed, or exceeds [`limits`](gltf::limits); the sentence begins
-/// with the file name.
 pub fn load_as(
     path: &Path,
     budget: MemoryBudget,

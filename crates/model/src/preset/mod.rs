@@ -7,7 +7,7 @@ pub mod animation;
 mod bookmark;
 mod fit;
 mod fitted;
-mod golden_test;
+mod golden_budget;
 mod landing;
 mod missing_parts;
 mod output;
@@ -43,7 +43,7 @@ use crate::{
 pub use animation::{Animation, Track};
 pub use bookmark::{Bookmark, MAX_BOOKMARK_CHARS, MAX_BOOKMARKS, check_bookmark_name};
 pub use fit::{Fit, LengthUnit};
-pub use golden_test::GoldenTest;
+pub use golden_budget::GoldenTest;
 pub use output::{NAMED_SIZES, Output, named_size};
 
 pub use crate::accuracy::{AccuracyRequest, PinnedOptions, Tier, Visibility};
@@ -99,7 +99,7 @@ pub struct MissingInScene {
 }
 
 /// `; it has "Walk", "Run"`, or `; <none>` where there are no names.
-fn known<'a>(names: impl Iterator<Item = &'a String>, none: &str) -> String {
+fn list_names<'a>(names: impl Iterator<Item = &'a String>, none: &str) -> String {
     let names: Vec<String> = names.take(12).map(|name| format!("{name:?}")).collect();
     if names.is_empty() {
         format!("; {none}")
@@ -122,7 +122,7 @@ impl ClipPlayback {
             ("scene.second_clip", &self.second_clip),
         ] {
             if !name.is_empty() && scene.rig.clip(name).is_none() {
-                let known = known(
+                let known = list_names(
                     scene.rig.clips.iter().map(|clip| &clip.name),
                     "it has no clips",
                 );
@@ -425,11 +425,11 @@ impl Preset {
                 key: "scene.variant",
                 what: "variant",
                 name: variant.clone(),
-                known: known(scene.variants.iter(), "it has no variants"),
+                known: list_names(scene.variants.iter(), "it has no variants"),
             });
         }
         if !self.scene_camera.is_empty() && scene.camera(&self.scene_camera).is_none() {
-            let known = known(
+            let known = list_names(
                 scene.cameras.iter().map(|camera| &camera.name),
                 "it has no cameras",
             );

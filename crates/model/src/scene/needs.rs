@@ -108,9 +108,9 @@ impl Needs {
             is_drawn[draw.primitive] = true;
             is_unbent[draw.primitive] |= draw.deform.is_none();
         }
-        let drawn = || chosen(scene, &is_drawn);
+        let drawn = || primitives_of(scene, &is_drawn);
         // Deformed vertices are stored as f32, in place of any other format.
-        let unbent = || chosen(scene, &is_unbent);
+        let unbent = || primitives_of(scene, &is_unbent);
         let materials: BTreeSet<usize> = drawn().map(|p| p.material).collect();
         let count = |is_counted: fn(&Material) -> bool| {
             let has = |&&material: &&usize| is_counted(&scene.materials[material]);
@@ -228,7 +228,10 @@ impl Needs {
 }
 
 /// The primitives that are chosen, in their order.
-fn chosen<'a>(scene: &'a Scene, is_chosen: &'a [bool]) -> impl Iterator<Item = &'a Primitive> {
+fn primitives_of<'a>(
+    scene: &'a Scene,
+    is_chosen: &'a [bool],
+) -> impl Iterator<Item = &'a Primitive> {
     scene
         .primitives
         .iter()

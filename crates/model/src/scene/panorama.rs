@@ -106,7 +106,7 @@ fn between(side: usize, place: DVec2, texel: impl Fn(usize, usize) -> DVec3) -> 
     let near = at.floor();
     let part = at - near;
     let texel = |x: i64, y: i64| {
-        let [x, y] = folded(side as i64, x, y);
+        let [x, y] = fold_place(side as i64, x, y);
         texel(x, y)
     };
     let (x, y) = (near.x as i64, near.y as i64);
@@ -115,7 +115,7 @@ fn between(side: usize, place: DVec2, texel: impl Fn(usize, usize) -> DVec3) -> 
 }
 
 /// The texel that lies at a place at most one texel beyond an edge.
-fn folded(side: i64, mut x: i64, mut y: i64) -> [usize; 2] {
+fn fold_place(side: i64, mut x: i64, mut y: i64) -> [usize; 2] {
     let back = |at: i64| (-1 - at).max(at.min(2 * side - 1 - at)).clamp(0, side - 1);
     if x < 0 || x >= side {
         (x, y) = (back(x), side - 1 - y);
@@ -391,7 +391,7 @@ mod tests {
                 [[along, -1], [7 - along, 0]],
                 [[along, 8], [7 - along, 7]],
             ] {
-                assert_eq!(folded(8, x, y), [to_x as usize, to_y as usize]);
+                assert_eq!(fold_place(8, x, y), [to_x as usize, to_y as usize]);
             }
         }
     }

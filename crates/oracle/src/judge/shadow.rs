@@ -8,7 +8,7 @@ use super::{
         render::{
             project::project,
             rays::Rays,
-            sample_tests::SampleTests,
+            sample_rules::SampleTests,
             shadow::{Light, leaves_samples_out},
             surface::each_surface,
             triangles::triangles,

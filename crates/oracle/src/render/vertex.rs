@@ -55,13 +55,13 @@ impl<'a> VertexEvaluator<'a> {
             stack,
             moves: stack.moves(),
             has_unshared_vertices: stack.unshares_vertices(),
-            clip_from_world: rounded(&view.clip_from_world),
+            clip_from_world: round_matrix(&view.clip_from_world),
             world_from_normal: if draw.mirrored {
                 -normal_matrix
             } else {
                 normal_matrix
             },
-            picture_from_world: view.picture_from_world.as_ref().map(rounded),
+            picture_from_world: view.picture_from_world.as_ref().map(round_matrix),
         }
     }
 
@@ -272,7 +272,7 @@ impl Terms {
     }
 }
 
-fn rounded(matrix: &DMat4) -> RoundedMatrix {
+fn round_matrix(matrix: &DMat4) -> RoundedMatrix {
     rounded_columns(matrix).map(|column| column.map(f64::from))
 }
 

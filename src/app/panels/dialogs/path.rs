@@ -16,13 +16,15 @@ use eframe::egui::{
 use super::buttons::{Choice, buttons};
 use crate::{
     app::{
+        files::apply::export,
+        files::apply::save_to,
         files::{
-            command::{FileCommand, Purpose},
+            command::Purpose,
             completion::{self, Entry, Listing},
             system_dialog,
         },
         settings::recents::Recents,
-        shell::command::{Command, Commands},
+        shell::command::Commands,
         widgets::{size::size_ui, text::cut_middle, theme},
     },
     preset_file::{MAX_NAME, ModelFormat},
@@ -181,20 +183,20 @@ impl PathDialog {
                 return false;
             }
         }
-        commands.send(Command::File(match self.purpose {
+        match self.purpose {
             Purpose::Open if typed.starts_with('~') => {
-                FileCommand::Open(path.to_string_lossy().into_owned())
+                commands.open(path.to_string_lossy().into_owned());
             }
-            Purpose::Open => FileCommand::Open(typed.to_owned()),
-            Purpose::SaveAs => FileCommand::SaveTo {
-                path,
-                name: Some(self.preset_name()),
-            },
-            Purpose::Export => FileCommand::Export {
-                path,
-                size: self.size,
-            },
-        }));
+            Purpose::Open => commands.open(typed.to_owned()),
+            Purpose::SaveAs => {
+                let name = self.preset_name();
+                commands.run(|app| save_to(app, path, Some(name)));
+            }
+            Purpose::Export => {
+                let size = self.size;
+                commands.run(move |app| export(app, path, size));
+            }
+        }
         true
     }
 
@@ -209,7 +211,8 @@ impl PathDialog {
     pub fn request_folder(&mut self, commands: &Commands) {
         let folder = completion::folder_of(&self.text);
         if self.asked.as_ref() != Some(&folder) {
-            commands.send(Command::File(FileCommand::List(folder.clone())));
+            let listed = folder.clone();
+            commands.run(|app| app.state.jobs.list_folder(listed));
             (self.asked, self.listing, self.chosen) = (Some(folder), None, None);
         }
     }

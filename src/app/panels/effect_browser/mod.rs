@@ -17,11 +17,12 @@ use super::{
 use crate::{
     app::{
         editing::{session::Session, stack_drag::StackDrag},
-        files::{command::LibraryCommand, favorites::Starred},
+        files::favorites::Starred,
+        files::library,
         picture::effect_picture::EffectPicture,
         shell::{
             action::Action,
-            command::{Command, Commands, Edit},
+            command::{Commands, Edit},
             log::Level,
             state::State,
         },
@@ -279,8 +280,8 @@ impl EffectBrowser {
             tile.dnd_set_drag_payload(StackDrag::Enable((*effect).clone()));
             tile.context_menu(|ui| effect_menu::menu_ui(ui, state, commands, effect));
             if star.clicked() {
-                let star = LibraryCommand::Star(Starred::Effect, name.clone(), !is_favorite);
-                commands.send(Command::Library(star));
+                let name = name.clone();
+                commands.run(move |app| library::star(app, Starred::Effect, &name, !is_favorite));
             }
             if tile.clicked() {
                 self.has_added = true;
@@ -333,11 +334,11 @@ fn add(commands: &Commands, effect: &Arc<Effect>, rival: Option<&str>) {
             commands.edit(Edit::Replace(rival.into(), effect.clone()));
             let text =
                 format!("{name} replaced {rival}: both take the same slot of the rasterizer");
-            commands.send(Command::Notify(Level::Info, text));
+            commands.notify(Level::Info, text);
         }
         None => commands.edit(Edit::Enable(effect.clone())),
     }
-    commands.send(Command::Reveal(name.into()));
+    commands.reveal(name.into());
 }
 
 /// The open preset with nothing but `effect`: with the values of the built-in preset that shows it,

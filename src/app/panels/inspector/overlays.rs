@@ -3,12 +3,8 @@
 use eframe::egui::{RichText, Ui};
 
 use crate::app::{
-    picture::{command::ViewCommand, overlay::Overlay},
-    shell::{
-        action::Action,
-        command::{Command, Commands},
-        state::State,
-    },
+    picture::overlay::Overlay,
+    shell::{action::Action, command::Commands, state::State},
     widgets::{form::gain_ui, icons::swatch, panel::at_right, text::grouped, theme},
 };
 
@@ -29,14 +25,14 @@ pub fn overlays_ui(ui: &mut Ui, state: &State, commands: &Commands) {
                 .accessible_name(label)
                 .clicked()
             {
-                commands.send(Command::View(ViewCommand::ShowOverlay(overlay, on)));
+                commands.run(move |app| app.state.picture.overlays.set(overlay, on));
             }
             swatch(ui, overlay.color());
             if overlay == Overlay::Color {
                 let mut gain = state.picture.overlays.gain;
                 let hint = "Factor of the color difference";
                 if gain_ui(ui, "Overlay gain", &mut gain, hint).changed() {
-                    commands.send(Command::View(ViewCommand::OverlayGain(gain)));
+                    commands.run(move |app| app.state.picture.overlays.gain = gain);
                 }
             }
             if let Some(findings) = findings {

@@ -7,10 +7,9 @@ use eframe::egui::{self, Align2, DragValue, Label, Sense, Ui, vec2};
 use crate::{
     app::{
         editing::session::Session,
-        files::command::FileCommand,
         shell::{
             action::Action,
-            command::{Command, Commands, Edit},
+            command::{Commands, Edit},
             state::State,
         },
         widgets::{
@@ -49,10 +48,7 @@ pub fn scenes_ui(ui: &mut Ui, state: &State, commands: &Commands) {
         let button = egui::Button::selectable(is_open, builtin.name)
             .min_size(vec2(ui.available_width(), theme::ROW));
         if ui.add(button).on_hover_text(builtin.about).clicked() && !is_open {
-            commands.send(Command::File(FileCommand::Open(format!(
-                "builtin:{}",
-                builtin.name
-            ))));
+            commands.open(format!("builtin:{}", builtin.name));
         }
         if is_open && let Some(changed) = params_ui(ui, builtin, query) {
             commands.edit(Edit::BuiltinQuery(changed));

@@ -13,14 +13,11 @@ use eframe::egui::{self, Align, DragValue, Layout, Rect, Ui, pos2, vec2};
 use self::span::Span;
 use crate::{
     app::{
-        editing::{
-            command::{KeyframeEdit, TimeCommand},
-            key_id::KeyId,
-            session::Session,
-        },
+        editing::apply::keyframe,
+        editing::{command::KeyframeEdit, key_id::KeyId, session::Session},
         shell::{
             action::Action,
-            command::{Command, Commands, Edit},
+            command::{Commands, Edit},
             state::State,
         },
         widgets::{
@@ -105,7 +102,8 @@ impl Timeline {
             .accessible_name("Key time")
             .on_hover_text("Time of this key");
         if response.changed() {
-            commands.send(Command::Keyframe(KeyframeEdit::Move(key.clone(), time_s)));
+            let edit = KeyframeEdit::Move(key.clone(), time_s);
+            commands.run(|app| keyframe(app, edit));
         }
         let mut chosen = easing;
         ui.add_enabled_ui(!is_stepped, |ui| {
@@ -126,7 +124,8 @@ impl Timeline {
                 )
         });
         if chosen != easing {
-            commands.send(Command::Keyframe(KeyframeEdit::Ease(key.clone(), chosen)));
+            let edit = KeyframeEdit::Ease(key.clone(), chosen);
+            commands.step(|app| keyframe(app, edit));
         }
         if icon_button(ui, Icon::Cross, "Remove the key (Delete)").clicked() {
             commands.perform(Action::RemoveKey);
@@ -253,7 +252,8 @@ fn time_ui(ui: &mut Ui, session: &Session, commands: &Commands) {
         .accessible_name("Time")
         .on_hover_text("The time that is shown");
     if response.changed() {
-        commands.send(Command::Time(TimeCommand::Show(now_s)));
+        let time_s = now_s;
+        commands.run(move |app| app.state.session.playback.show(time_s));
     }
     if session.is_off_its_time() {
         ui.spacing_mut().item_spacing.x = 2.0;
@@ -263,14 +263,14 @@ fn time_ui(ui: &mut Ui, session: &Session, commands: &Commands) {
             .on_hover_text("Make this the preset's own time, which saved pictures show")
             .clicked()
         {
-            commands.send(Command::Time(TimeCommand::Keep));
+            commands.run(|app| app.state.session.keep_shown_time());
         }
         if ui
             .small_button("Back")
             .on_hover_text(format!("Show the preset's own time, {own_s:.3} s"))
             .clicked()
         {
-            commands.send(Command::Time(TimeCommand::ShowOwn));
+            commands.run(|app| app.state.session.show_own_time());
         }
     }
 }

@@ -10,12 +10,8 @@ use super::{
 };
 use crate::{
     app::{
-        picture::command::ViewCommand,
-        shell::{
-            command::{Command, Commands},
-            log::Level,
-            state::State,
-        },
+        picture::apply::measure,
+        shell::{command::Commands, log::Level, state::State},
         widgets::{
             panel::{describe, plate},
             text::short,
@@ -235,11 +231,11 @@ pub fn take_click(ui: &Ui, response: &Response, side: Rect, state: &State, comma
     let uv = (pointer - at.min) / at.size();
     let view = state.session.view_at(scene, size);
     match scene_point(scene, &view, DVec2::new(uv.x.into(), uv.y.into())) {
-        Some(point) => commands.send(Command::View(ViewCommand::Measure(Some(point)))),
-        None => commands.send(Command::Notify(
+        Some(point) => commands.run(move |app| measure(&mut app.state, Some(point))),
+        None => commands.notify(
             Level::Info,
-            "There is no triangle under this click, so no point is measured from".into(),
-        )),
+            "There is no triangle under this click, so no point is measured from",
+        ),
     }
 }
 

@@ -10,9 +10,9 @@ use super::{
 };
 use crate::{
     app::{
-        picture::command::{Picking, ViewCommand},
+        picture::command::Picking,
         shell::{
-            command::{Command, Commands, Edit},
+            command::{Commands, Edit},
             log::Level,
             state::State,
         },
@@ -56,13 +56,13 @@ pub fn pick(
         uv,
     ) {
         Some(edit) => {
-            commands.send(Command::View(ViewCommand::Pick(None)));
+            commands.run(|app| app.state.picture.picking = None);
             commands.edit(edit);
         }
-        None => commands.send(Command::Notify(
+        None => commands.notify(
             Level::Info,
-            "There is no triangle under this click. Nothing was changed.".into(),
-        )),
+            "There is no triangle under this click. Nothing was changed.",
+        ),
     }
 }
 
