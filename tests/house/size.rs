@@ -29,8 +29,8 @@ const RUST: &[(&str, u64)] = &[
     ("tests/picture", 283_500),
 ];
 
-/// Files and bytes of WGSL in `shaders`.
-/// What effects declare of their parameters, which Rust did.
+/// Files and bytes of WGSL in `shaders`: with what effects declare of their parameters, which Rust
+/// did.
 const SHADERS: (usize, u64) = (178, 472_000);
 
 /// Packages in `Cargo.lock`, of all platforms.
