@@ -49,10 +49,11 @@ fn effects() -> BTreeSet<String> {
 
 /// The effects that have a side in Rust.
 fn in_rust() -> BTreeSet<String> {
-    const CATALOG: [&str; 8] = [
+    const CATALOG: [&str; 9] = [
         "mod",
         "conflict",
         "effect",
+        "given",
         "image_file",
         "list",
         "one_sun",

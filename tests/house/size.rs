@@ -12,7 +12,7 @@ const RUST: &[(&str, u64)] = &[
     ("crates/kernels", 238_500),
     // The types of the crate gltf, and what checks them: the reader's own tables went for it.
     // The reader of effects and what evaluates their texts, which crates/files lost.
-    ("crates/model", 1_438_500),
+    ("crates/model", 1_439_500),
     ("crates/one_thread", 4_100),
     ("crates/oracle", 460_000),
     ("crates/page", 21_500),
@@ -26,7 +26,8 @@ const RUST: &[(&str, u64)] = &[
     // Formulas against values computed apart: the second side in Rust of 26 effects went for it.
     ("tests/house", 774_000),
     ("tests/lab", 358_000),
-    ("tests/picture", 283_500),
+    // Five more effects of other people, which move with the clock.
+    ("tests/picture", 284_500),
 ];
 
 /// Files and bytes of WGSL in `shaders`: with what effects declare of their parameters, which Rust

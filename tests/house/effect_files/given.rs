@@ -37,7 +37,7 @@ fn an_effect_is_given_the_clock_the_picture_and_the_camera() {
         .collect();
     assert_eq!(names, ["rate"], "what is given has no slider and no key");
     let mut preset = Preset {
-        scene: SceneSource::Builtin("cube".into()),
+        scene: SceneSource::Builtin("knot?tess=6".into()),
         ..Preset::default()
     };
     assert!(!preset.is_moving());

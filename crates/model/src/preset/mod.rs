@@ -4,6 +4,7 @@
 //! the stack itself: keyframes change its values with the time.
 
 pub mod animation;
+mod backdrop;
 mod bookmark;
 mod fit;
 mod fitted;
@@ -22,18 +23,18 @@ mod toward;
 
 use std::{path::PathBuf, sync::Arc};
 
-use glam::{DMat4, DVec3, DVec4};
+use glam::{DMat4, DVec3};
 
 use crate::{
     effects::{
-        Effect, EnabledEffect, Stack, Surface,
+        EnabledEffect, Stack,
         given::{Moment, words_of_view},
     },
     math::rotation_y,
     scene::{
-        Background, Bounds, Ground, Scene,
+        Bounds, Ground, Scene,
         camera::Camera,
-        parts::{Scope, ShownParts},
+        parts::ShownParts,
         pose::{Motion, Pose, scene_from_nodes},
         punctual::{PlacedLight, SceneLight},
         shadow_resolution::ShadowResolution,
@@ -178,33 +179,6 @@ impl Clock {
         // The remainder of a tiny negative number may round up to the length of the range.
         let wrapped_s = from_s + (next_s - from_s).rem_euclid(to_s - from_s);
         (if wrapped_s < to_s { wrapped_s } else { from_s }, true)
-    }
-}
-
-impl Preset {
-    /// What pixels without a triangle show: the background of the output, through the tone mapping
-    /// that asks for it.
-    pub fn backdrop(&self) -> Background {
-        let mut backdrop = self.output.backdrop();
-        for enabled in &self.evaluated_stack().0 {
-            let original = enabled.effect.base.as_ref().unwrap_or(&enabled.effect);
-            if original != Effect::named("tonemap") || enabled.on != Scope::default() {
-                continue;
-            }
-            if let Some(shown) = &enabled.effect.hooks.surface
-                && enabled.number("background") != 0.0
-            {
-                [backdrop.top, backdrop.bottom] = [backdrop.top, backdrop.bottom].map(|color| {
-                    let color = DVec4::from_array(color.map(f64::from));
-                    let seen = Surface {
-                        color,
-                        ..Surface::example(color.truncate(), 0)
-                    };
-                    shown(seen, &enabled.words).color.as_vec4().to_array()
-                });
-            }
-        }
-        backdrop
     }
 }
 

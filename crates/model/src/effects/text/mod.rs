@@ -8,6 +8,7 @@ mod built_in;
 pub mod declaration;
 pub mod error;
 mod functions;
+mod member;
 pub mod parameters;
 pub mod tokens;
 pub mod twin;
