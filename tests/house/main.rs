@@ -8,6 +8,7 @@ mod effect_files;
 mod effect_inputs;
 mod evaluator;
 mod features;
+mod formulas;
 mod layout;
 mod loader;
 mod meshlets;

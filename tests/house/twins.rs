@@ -1,8 +1,8 @@
-//! Promise: the WGSL of every built-in effect, evaluated in f64, says what its function in Rust
+//! Promise: the WGSL of every built-in effect with a side in Rust, evaluated in f64, says what its function in Rust
 //! says: integers and booleans exactly, floats within 1e-9, over random inputs and parameters.
 //! Needs no adapter.
 
-use std::sync::Arc;
+use std::{path::Path, sync::Arc};
 
 use glam::{DMat4, DVec3};
 use rasterlab::{
@@ -10,8 +10,8 @@ use rasterlab::{
     effects::{
         EFFECTS, Effect,
         hooks::{
-            Hooks, Image, ImageAt, Lens, PassInput, Picture, Pixel, Sample, Signs, Surface,
-            TriangleSetup, Vertex,
+            Hooks, Image, ImageAt, Lens, PassInput, Picture, Sample, Signs, Surface, TriangleSetup,
+            Vertex,
         },
     },
     scene::{Bounds, camera::Camera, view::View},
@@ -25,7 +25,7 @@ use super::effect_inputs::{between, direction, parameters, surface, vector, whol
 const TOLERANCE: f64 = 1e-9;
 
 /// Effects whose text and function are meant to differ by more: lib/angle has a polynomial for the
-/// sine, within 3.4e-9 of it, and a series for the direction, within 2^-24 of it.
+/// sine, within 3.4e-9 of it.
 const LOOSER: &[(&str, f64)] = &[
     // Multiplied by the arm.
     ("explode", 1e-7),
@@ -33,11 +33,6 @@ const LOOSER: &[(&str, f64)] = &[
     ("wobble", 1e-6),
     // Turns a lamp as narrow as a tenth of a radian.
     ("studio", 1e-6),
-    // Multiplied by the position in spacings.
-    ("hatch", 5e-6),
-    // Multiplied by the position in cells.
-    ("halftone", 1e-5),
-    ("crt", 1e-6),
 ];
 
 /// Random inputs of each effect.
@@ -80,7 +75,11 @@ fn each_effect(
 ) {
     let mut faults = Vec::new();
     let mut compared = 0;
-    for effect in EFFECTS.iter().filter(|&effect| has(&effect.hooks)).cloned() {
+    let in_rust = |effect: &&Arc<Effect>| {
+        let file = format!("crates/model/src/effects/{}.rs", effect.name);
+        has(&effect.hooks) && Path::new(env!("CARGO_MANIFEST_DIR")).join(file).exists()
+    };
+    for effect in EFFECTS.iter().filter(in_rust).cloned() {
         let hooks = evaluated(&Library::Embedded, &effect)
             .unwrap_or_else(|error| panic!("{}: {error}", effect.name));
         let run = std::panic::AssertUnwindSafe(|| compare(&effect, &hooks));
@@ -89,7 +88,7 @@ fn each_effect(
         }
         compared += 1;
     }
-    assert!(compared > 2);
+    assert!(compared > 0);
     assert!(faults.is_empty(), "{}", faults.join("\n\n"));
 }
 
@@ -238,71 +237,6 @@ fn sample_functions_agree() {
             "{}: {drawn:?}",
             effect.name
         );
-    });
-}
-
-#[test]
-fn image_functions_agree() {
-    let has = |hooks: &Hooks| hooks.image.is_some();
-    each_effect(has, |effect, hooks| {
-        let mut rng = Rng(14);
-        let (width, height) = (12_u32, 9_u32);
-        let pixels = (width * height) as usize;
-        for turn in 0..TRIES / 20 {
-            let words = parameters(&mut rng, effect, turn);
-            let id = |rng: &mut Rng| {
-                if rng.real(0.0, 1.0) < 0.4 {
-                    u32::MAX
-                } else {
-                    whole(rng, 60)
-                }
-            };
-            let triangle_ids: Vec<u32> = (0..pixels).map(|_| id(&mut rng)).collect();
-            let key = |id: &u32, rng: &mut Rng| {
-                if *id == u32::MAX {
-                    0
-                } else {
-                    1 + whole(rng, 0x3f80_0000)
-                }
-            };
-            let keys: Vec<u32> = triangle_ids.iter().map(|id| key(id, &mut rng)).collect();
-            let texel = |rng: &mut Rng| std::array::from_fn(|_| whole(rng, 256) as u8);
-            let previous: Vec<[u8; 4]> = (0..pixels).map(|_| texel(&mut rng)).collect();
-            let row = |y: u32| [3 + 9 * y as u8, 77, 200 - 7 * y as u8, 255];
-            let background: Vec<[u8; 4]> = (0..height).map(row).collect();
-            let picture = Picture {
-                width,
-                height,
-                triangle_ids: &triangle_ids,
-                keys: &keys,
-                draws: &[0, 20, 40],
-                previous: (turn % 3 != 0).then_some(&previous),
-                background: &background,
-            };
-            for index in 0..width * height {
-                let color = match rng.real(0.0, 1.0) < 0.2 {
-                    true => picture.background(index / width),
-                    false => vector(&mut rng, 0.0, 1.0).extend(1.0),
-                };
-                let q = Pixel {
-                    color,
-                    x: index % width,
-                    y: index / width,
-                    step_offset: 0.0,
-                };
-                let [given, expected] = [hooks, &effect.hooks].map(|hooks| {
-                    (hooks.image.as_ref().expect("it is on the hook").finish)(q, &picture, &words)
-                });
-                let [mine, wanted] = [given, expected].map(|q| q.color.to_array());
-                same(effect, "color", mine, wanted, &(&words, q));
-                assert_eq!(
-                    (given.x, given.y),
-                    (expected.x, expected.y),
-                    "{}",
-                    effect.name
-                );
-            }
-        }
     });
 }
 

@@ -4,6 +4,7 @@
 
 mod accepted;
 mod duplicates;
+mod given;
 mod mutated;
 mod numerics;
 mod pictures;

@@ -35,7 +35,7 @@ use crate::{
             tile::{Tile, Tiling},
         },
     },
-    effects::{Effect, lambert},
+    effects::Effect,
     preset::{AccuracyRequest, Preset},
     preset_file::{Folders, open},
     scene::Scene,
@@ -367,7 +367,7 @@ fn sample(effect: &Arc<Effect>, session: &Session) -> Preset {
         None => {
             preset.stack = Default::default();
             if effect.hooks.surface.is_none() || effect.is_of_file() {
-                preset.stack.enable(&lambert::EFFECT);
+                preset.stack.enable(Effect::named("lambert"));
             }
             preset.stack.enable(effect);
         }

@@ -4,17 +4,14 @@
 use std::{collections::BTreeSet, ops::Range};
 
 use super::{
-    attributes::{self, Attribute},
-    bounds,
+    attributes, bounds,
     error::{EffectError, Text},
+    functions::{OfPass, image_passes, is_smooth, kept_frames, pass_scale},
     parameters::{self, Parameters},
     tokens::{Token, closing, tokens},
     words::{self, LIBRARY},
 };
-use crate::effects::{
-    HookFunctions,
-    hooks::{EarlierFrames, ImagePass},
-};
+use crate::effects::{HookFunctions, hooks::ImagePass};
 
 /// The hooks: type of the first parameter, type of the result, and the library file that declares
 /// the former.
@@ -29,17 +26,14 @@ const HOOKS: [(&str, &str, &str); 5] = [
 /// Index of the one hook that several functions may be on, each a pass.
 const PASSES: usize = 4;
 
-/// Most passes of one effect.
-const MOST_PASSES: usize = 8;
-
-/// Words of `@pass`, and pixels of the picture for one that such a pass writes, along a side.
-const PASS_SIZES: [(&str, u32); 3] = [("full", 1), ("half", 2), ("quarter", 4)];
-
 /// Functions of `lib/image` that only a pixel effect may call.
 const OF_PIXELS: [&str; 2] = ["image_background", "image_previous"];
 
 /// Functions of `lib/image_kept`, which is there where a pass is kept.
 const OF_KEPT: [&str; 2] = ["image_kept", "image_kept_at"];
+
+/// Attributes that stand before functions.
+pub const OF_FUNCTIONS: [&str; 3] = ["pass", "kept", "smooth"];
 
 /// What an effect file says.
 #[derive(Debug)]
@@ -55,29 +49,33 @@ pub struct Declaration<'a> {
     pub passes: Vec<ImagePass>,
     /// Names declared at module scope, and the constants of choices.
     pub declared: BTreeSet<String>,
+    /// The color of its surface and pixel functions has no steps.
+    pub is_smooth: bool,
     /// Files that it uses, as `lib/surface`; those of its hooks' types are among them.
     pub uses: Vec<String>,
 }
 
 /// A function as its head declares it.
-struct Function<'a> {
-    name: Token<'a>,
+pub struct Function<'a> {
+    pub name: Token<'a>,
     /// Types of the parameters.
-    parameters: Vec<String>,
+    pub parameters: Vec<String>,
     /// Where the type of the last parameter begins.
-    last_type: Option<Token<'a>>,
-    result: String,
+    pub last_type: Option<Token<'a>>,
+    pub result: String,
     /// What stands before it.
-    of_pass: OfPass,
+    pub of_pass: OfPass,
+    /// `@smooth` stands before it: its color has no steps.
+    pub is_smooth: bool,
 }
 
-/// What attributes before a function say of a pass.
-#[derive(Clone, Copy, Default, PartialEq)]
-struct OfPass {
-    /// `@pass`: pixels of the picture for one that it writes, along a side.
-    scale: Option<u32>,
-    /// `@kept`: what it writes lives to the next frame, and a picture follows so many.
-    kept: Option<EarlierFrames>,
+/// Whose effect a text is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Author {
+    /// The lab's: it may use every file of the library.
+    Lab,
+    /// Anybody's.
+    Anybody,
 }
 
 /// Reads an effect file; its constants of choices begin with `stem`.
@@ -85,14 +83,28 @@ struct OfPass {
 /// # Errors
 /// A text out of bounds, a declaration that an effect cannot have, no hook, two functions on one
 /// hook, or as [`parameters::read`].
-pub fn read<'a>(text: &Text<'a>, stem: &str) -> Result<Declaration<'a>, EffectError> {
+pub fn read<'a>(
+    text: &Text<'a>,
+    stem: &str,
+    author: Author,
+) -> Result<Declaration<'a>, EffectError> {
     let tokens = tokens(text.text);
     bounds::check(text, &tokens)?;
-    let uses = uses(text)?;
+    let uses = uses(text, author)?;
     let scope = module_scope(text, &tokens)?;
     words::check_declared(text, &scope.names)?;
     words::refuse(text, &tokens, &scope.names)?;
-    let (hooks, passes, struct_name) = hooks(text, &scope.functions)?;
+    let (hooks, passes, struct_name) = match (hooks(text, &scope.functions), author) {
+        // An effect that replaces a part of the rasterizer may have no hook.
+        (Err(error), Author::Lab) => {
+            let name = type_name(stem);
+            let declared = scope.structs.iter().find(|(token, _)| token.text == name);
+            let (token, _) = declared.ok_or(error)?;
+            (HookFunctions::default(), Vec::new(), *token)
+        }
+        (found, _) => found?,
+    };
+    let is_smooth = is_smooth(text, &scope.functions, &hooks)?;
     let mut structs = scope.structs.iter();
     let Some((_, open)) = structs.find(|(name, _)| name.text == struct_name.text) else {
         let message = format!(
@@ -107,12 +119,13 @@ pub fn read<'a>(text: &Text<'a>, stem: &str) -> Result<Declaration<'a>, EffectEr
         .extend(scope.attributes.iter().cloned());
     let constants = parameters::constants(text, stem, &parameters)?;
     let mut declaration = Declaration {
-        about: about(text.text),
+        about: about(text.text, stem),
         tokens,
         struct_name: struct_name.text,
         parameters,
         hooks,
         passes,
+        is_smooth,
         declared: BTreeSet::new(),
         uses,
     };
@@ -131,6 +144,18 @@ pub fn read<'a>(text: &Text<'a>, stem: &str) -> Result<Declaration<'a>, EffectEr
     Ok(declaration)
 }
 
+/// The name of the struct of an effect: `my_ink` is `MyInk`.
+pub fn type_name(name: &str) -> String {
+    let capital = |word: &str| {
+        word.chars()
+            .take(1)
+            .flat_map(char::to_uppercase)
+            .chain(word.chars().skip(1))
+            .collect::<String>()
+    };
+    name.split('_').map(capital).collect()
+}
+
 /// What stands at module scope.
 #[derive(Default)]
 struct Scope<'a> {
@@ -145,7 +170,7 @@ struct Scope<'a> {
 
 fn module_scope<'a>(text: &Text<'a>, tokens: &[Token<'a>]) -> Result<Scope<'a>, EffectError> {
     let mut scope = Scope::default();
-    let mut of_pass = OfPass::default();
+    let (mut of_pass, mut is_smooth) = (OfPass::default(), false);
     let mut at = 0;
     while at < tokens.len() {
         let token = tokens[at];
@@ -185,6 +210,7 @@ fn module_scope<'a>(text: &Text<'a>, tokens: &[Token<'a>]) -> Result<Scope<'a>, 
                 scope.names.push(name);
                 scope.functions.push(Function {
                     of_pass: std::mem::take(&mut of_pass),
+                    is_smooth: std::mem::take(&mut is_smooth),
                     ..function(text, tokens, at, name, body)
                 });
                 at = closing(tokens, body) + 1;
@@ -199,15 +225,19 @@ fn module_scope<'a>(text: &Text<'a>, tokens: &[Token<'a>]) -> Result<Scope<'a>, 
                 at = end_of_statement(text, tokens, at)?;
                 continue;
             }
-            ("@", Some(name)) if ["pass", "kept"].contains(&name.text) => {
+            ("@", Some(name)) if OF_FUNCTIONS.contains(&name.text) => {
                 let (attribute, next) = attributes::read(text, tokens, at)?;
                 match attribute.name {
                     "pass" => of_pass.scale = Some(pass_scale(text, &attribute)?),
+                    "smooth" => is_smooth = true,
                     _ => of_pass.kept = Some(kept_frames(text, &attribute)?),
                 }
                 let follows = tokens.get(next).map_or("", |token| token.text);
                 if !["fn", "@"].contains(&follows) {
-                    let message = format!("@{} stands before the fn of a pass", name.text);
+                    let message = match attribute.name {
+                        "smooth" => "@smooth stands before the fn of a hook".into(),
+                        name => format!("@{name} stands before the fn of a pass"),
+                    };
                     return Err(attribute.error(text, message));
                 }
                 scope.attributes.push(attribute.begin..attribute.end);
@@ -376,6 +406,7 @@ fn function<'a>(
         last_type,
         result,
         of_pass: OfPass::default(),
+        is_smooth: false,
     }
 }
 
@@ -467,117 +498,17 @@ fn hooks<'a>(
     Ok((hooks, passes, struct_name))
 }
 
-/// Pixels of the picture for one of a pass, along a side, as `@pass` says.
-fn pass_scale(text: &Text<'_>, attribute: &Attribute<'_>) -> Result<u32, EffectError> {
-    let known = PASS_SIZES
-        .iter()
-        .find(|(word, _)| attribute.arguments == [*word]);
-    known.map(|(_, scale)| *scale).ok_or_else(|| {
-        attribute.error(
-            text,
-            "@pass takes one word: full, half or quarter, the size of what the pass writes",
-        )
-    })
-}
-
-/// The earlier frames that `@kept(frames, seconds)` says.
-fn kept_frames(text: &Text<'_>, attribute: &Attribute<'_>) -> Result<EarlierFrames, EffectError> {
-    let usage = format!(
-        "two numbers: 1 to {} earlier frames that a picture follows, and the seconds from one to the next, above 0 and at most {}",
-        EarlierFrames::MOST,
-        EarlierFrames::LONGEST_STEP_S
-    );
-    let numbers = attribute.numbers(text, (2, 2), &usage)?;
-    let [frames, step_s] = [numbers[0], numbers[1]];
-    let is_allowed = frames.fract() == 0.0
-        && (1.0..=f64::from(EarlierFrames::MOST)).contains(&frames)
-        && step_s > 0.0
-        && step_s <= EarlierFrames::LONGEST_STEP_S;
-    if !is_allowed {
-        return Err(attribute.error(text, format!("@kept takes {usage}")));
-    }
-    let frames = frames as u32;
-    Ok(EarlierFrames { frames, step_s })
-}
-
-/// The passes of an effect, of which the last one writes the picture.
-fn image_passes<'a>(
-    text: &Text<'a>,
-    functions: &[Function<'a>],
-    passes: &[&Function<'a>],
-) -> Result<Vec<ImagePass>, EffectError> {
-    let error = |function: &Function<'_>, message: String| text.at(function.name, message);
-    let is_pass = |function: &&Function<'_>| {
-        passes
-            .iter()
-            .any(|pass| pass.name.offset == function.name.offset)
-    };
-    if let Some(other) = functions
-        .iter()
-        .find(|function| function.of_pass != OfPass::default() && !is_pass(function))
-    {
-        let attribute = if other.of_pass.scale.is_some() {
-            "pass"
-        } else {
-            "kept"
-        };
-        let message = format!(
-            "@{attribute} stands before {}, which is no pass: fn {0}(at: ImageAt, p: Parameters) -> vec4f",
-            other.name.text
-        );
-        return Err(error(other, message));
-    }
-    let mut kept = passes.iter().filter(|pass| pass.of_pass.kept.is_some());
-    if let (Some(first), Some(second)) = (kept.next(), kept.next()) {
-        let message = format!(
-            "{} and {} are both kept; an effect keeps one pass, so remove one @kept",
-            first.name.text, second.name.text
-        );
-        return Err(error(second, message));
-    }
-    if let Some(last) = passes.last().filter(|last| last.of_pass.kept.is_some()) {
-        let message = format!(
-            "{} is the last pass and writes the picture, which is not kept; write another pass after it, for instance one that returns image_last(at.x, at.y)",
-            last.name.text
-        );
-        return Err(error(last, message));
-    }
-    if let Some(last) = passes
-        .last()
-        .filter(|last| last.of_pass.scale.unwrap_or(1) != 1)
-    {
-        let message = format!(
-            "{} is the last pass and writes the picture, which has its full size; remove @pass, or write another pass after it",
-            last.name.text
-        );
-        return Err(error(last, message));
-    }
-    if let Some(extra) = passes.get(MOST_PASSES) {
-        let message = format!(
-            "{} is pass number {}; an effect has at most {MOST_PASSES}",
-            extra.name.text,
-            MOST_PASSES + 1
-        );
-        return Err(error(extra, message));
-    }
-    let pass = |function: &&Function<'_>| ImagePass {
-        name: function.name.text.to_owned(),
-        scale: function.of_pass.scale.unwrap_or(1),
-        kept: function.of_pass.kept,
-    };
-    Ok(passes.iter().map(pass).collect())
-}
-
 /// The lines `//@ use lib/NAME`.
-fn uses(text: &Text<'_>) -> Result<Vec<String>, EffectError> {
+fn uses(text: &Text<'_>, author: Author) -> Result<Vec<String>, EffectError> {
     let mut found = Vec::new();
     let mut offset = 0;
     for line in text.text.split_inclusive('\n') {
         if let Some(directive) = line.trim().strip_prefix("//@") {
             let used = directive.trim().strip_prefix("use ").map(str::trim);
-            let is_known = used
-                .and_then(|used| used.strip_prefix("lib/"))
-                .is_some_and(|name| LIBRARY.contains(&name));
+            let is_known = author == Author::Lab
+                || used
+                    .and_then(|used| used.strip_prefix("lib/"))
+                    .is_some_and(|name| LIBRARY.contains(&name));
             match used.filter(|_| is_known) {
                 Some(used) => found.push(used.to_owned()),
                 None => {
@@ -597,7 +528,7 @@ fn uses(text: &Text<'_>) -> Result<Vec<String>, EffectError> {
 }
 
 /// The first sentence of the comment at the top of the file, without a leading `Name:`.
-fn about(text: &str) -> String {
+fn about(text: &str, stem: &str) -> String {
     let lines = text
         .trim_start_matches('\u{feff}')
         .lines()
@@ -619,7 +550,7 @@ fn about(text: &str) -> String {
         .trim_end_matches('.');
     let about = sentence
         .split_once(": ")
-        .filter(|(head, _)| !head.contains(' '))
+        .filter(|(head, _)| !head.contains(' ') || head.to_lowercase().replace(' ', "_") == stem)
         .map_or(sentence, |(_, rest)| rest);
     about.chars().take(160).collect()
 }

@@ -1,4 +1,4 @@
-//! The f64 side of an effect file: its own text, evaluated on the CPU with integers exact and
+//! The f64 side of an effect: its own text, evaluated on the CPU with integers exact and
 //! floats in f64.
 
 use std::{
@@ -9,7 +9,6 @@ use std::{
 
 use glam::{DVec2, DVec3, DVec4};
 
-use super::rewrite::lengths;
 use crate::{
     effects::{
         Effect,
@@ -21,14 +20,14 @@ use crate::{
     },
     evaluator::{Host, LowerError, NoHost, Options, Precision, Program, Word},
     math::hash,
-    params::{Field, WgslType},
+    params::{Field, ValueType, WgslType},
 };
 
 /// Instructions of one call. The loops of an effect end long before.
 const MAX_STEPS: u64 = 100_000_000;
 /// Functions of the library that read more than their arguments: of `lib/image`,
 /// `lib/image_pass`, `lib/image_direction` and `lib/image_kept`, then of `lib/image_file`.
-const EXTERNALS: [&str; 18] = [
+pub const EXTERNALS: [&str; 18] = [
     "image_has",
     "image_at",
     "image_background",
@@ -171,6 +170,13 @@ impl Reader<'_> {
     fn floats<const N: usize>(&mut self) -> [f64; N] {
         std::array::from_fn(|_| self.word().to_f64())
     }
+}
+
+/// Lengths among the parameters: a vertex effect moves a vertex by at most their sum.
+pub fn lengths(fields: &[Arc<Field>]) -> impl Iterator<Item = &Arc<Field>> {
+    fields
+        .iter()
+        .filter(|field| field.unit == "m" && field.value_type == ValueType::F32)
 }
 
 /// `values`, moved by `strength` times their largest magnitude, each up or down by a hash of its

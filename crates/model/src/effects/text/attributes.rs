@@ -8,9 +8,9 @@ use super::{
 use crate::params::did_you_mean;
 
 /// Every attribute that a parameter may have.
-pub const NAMES: [&str; 11] = [
-    "range", "hard", "default", "unit", "log", "color", "point", "toggle", "choice", "when",
-    "image",
+pub const NAMES: [&str; 15] = [
+    "range", "hard", "soft", "default", "unit", "log", "height", "depth", "color", "point",
+    "toggle", "choice", "when", "image", "given",
 ];
 
 /// `@name(arguments)`.

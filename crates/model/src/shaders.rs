@@ -62,7 +62,7 @@ impl Library {
     }
 
     /// Name and text of every embedded file.
-    pub(super) fn embedded() -> impl Iterator<Item = (String, &'static str)> {
+    pub fn embedded() -> impl Iterator<Item = (String, &'static str)> {
         fn files(folder: &'static Dir<'static>, found: &mut Vec<(String, &'static str)>) {
             for file in folder.files() {
                 if let (Some(name), Some(text)) = (
@@ -86,7 +86,7 @@ impl Library {
     }
 
     /// Tells files outside the names of parts that were linked.
-    pub(super) fn record<'a>(&self, mut parts: impl Iterator<Item = &'a str>) {
+    pub fn record<'a>(&self, mut parts: impl Iterator<Item = &'a str>) {
         if let Self::Outside(files) = self {
             files.linked(&mut parts);
         }

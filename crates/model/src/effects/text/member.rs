@@ -1,264 +1,35 @@
-//! Parameters: the struct of an effect file as fields of the registry. Documentation stands in the
-//! comment above a member, and type, range, unit, default and widget in its attributes.
+//! Members: what the attributes of one parameter say.
 
-use std::{collections::BTreeSet, ops::Range, sync::Arc};
+use std::{collections::BTreeSet, ops::Range};
 
 use super::{
-    attributes::{self, Attribute},
+    attributes::Attribute,
     error::{EffectError, Text},
-    tokens::{Token, closing},
-    words,
+    tokens::Token,
 };
 use crate::{
-    effects::{EMBEDDED_IMAGE, constant_name},
+    effects::{EMBEDDED_IMAGE, given::Given},
     params::{Field, Param, ValueType, WgslType},
 };
 
-/// Longest name of a parameter.
-const MAX_NAME_CHARS: usize = 40;
-/// Most members of the struct.
-const MAX_MEMBERS: usize = 64;
 /// Most members that are pictures.
 const MAX_IMAGES: usize = 4;
-/// Names that preset files use beside those of parameters.
-const RESERVED: [&str; 2] = ["effect", "on"];
-
-/// The struct of an effect's parameters.
-#[derive(Debug)]
-pub struct Parameters {
-    pub fields: Vec<Arc<Field>>,
-    /// Members that are pictures, in order.
-    pub images: Vec<NamedImage>,
-    /// Parameter words with every default.
-    pub defaults: Vec<u32>,
-    /// Byte ranges of attributes, which WGSL does not know.
-    pub attributes: Vec<Range<usize>>,
-}
-
-/// A member of the struct that is a picture.
-#[derive(Debug)]
-pub struct NamedImage {
-    /// Name of the member.
-    pub member: String,
-    /// Byte offset of the member in the struct.
-    pub offset: usize,
-    /// Bytes of the text that are the name of the picture, in quotation marks.
-    pub named: Range<usize>,
-}
-
-/// Reads the members between the braces of a struct; `open` is the index of the opening one.
-///
-/// # Errors
-/// A member of a type that no parameter has, an unknown or contradictory attribute, or a range
-/// without its default.
-pub fn read(text: &Text<'_>, tokens: &[Token<'_>], open: usize) -> Result<Parameters, EffectError> {
-    let close = closing(tokens, open);
-    let (mut fields, mut defaults, mut ranges) = (Vec::new(), Vec::new(), Vec::new());
-    let mut images: Vec<NamedImage> = Vec::new();
-    let mut at = open + 1;
-    while at < close {
-        let first = tokens[at];
-        let attributes = attributes_before(text, tokens, &mut at, close)?;
-        ranges.extend(
-            attributes
-                .iter()
-                .map(|attribute| attribute.begin..attribute.end),
-        );
-        let (name, types) = name_and_type(text, tokens, first, at, close)?;
-        at = types.end + 1;
-        check_name(text, name)?;
-        let mut names = fields.iter().map(|field: &Arc<Field>| &field.name);
-        if names.any(|other| other == name.text)
-            || images.iter().any(|image| image.member == name.text)
-        {
-            let message = format!("the parameter {} is declared twice", name.text);
-            return Err(text.at(name, message));
-        }
-        if fields.len() == MAX_MEMBERS {
-            let message = format!("an effect has at most {MAX_MEMBERS} parameters");
-            return Err(text.at(name, message));
-        }
-        let kind = &text.text[tokens[types.start].offset..tokens[types.end - 1].end()];
-        let member = Member {
-            text,
-            name,
-            kind,
-            attributes: &attributes,
-        };
-        if let Some(image) = member.attribute("image") {
-            let named = member.image(image, images.len())?;
-            images.push(NamedImage {
-                member: name.text.into(),
-                offset: 4 * defaults.len(),
-                named,
-            });
-            defaults.push(images.len() as u32 - 1);
-            continue;
-        }
-        let (param, wgsl, numbers) =
-            member.param(&fields, &documentation(text.text, first.offset))?;
-        let offset = (4 * defaults.len()).next_multiple_of(4 * wgsl.words());
-        defaults.resize(offset / 4 + wgsl.words(), 0);
-        let field = Field::new(param, wgsl, offset);
-        field
-            .set(&mut defaults, &numbers)
-            .map_err(|error| member.error(format!("the default of {}: {error}", name.text)))?;
-        fields.push(Arc::new(field));
-    }
-    if fields.is_empty() && images.is_empty() {
-        return Err(text.error(
-            tokens[open].offset,
-            1,
-            "the struct of an effect's parameters needs at least one member",
-        ));
-    }
-    let align = if fields.iter().any(|field| field.wgsl == WgslType::Vec4F32) {
-        4
-    } else {
-        1
-    };
-    defaults.resize(defaults.len().next_multiple_of(align), 0);
-    Ok(Parameters {
-        fields,
-        images,
-        defaults,
-        attributes: ranges,
-    })
-}
-
-/// The attributes before a member; `at` goes on to what follows them.
-fn attributes_before<'a>(
-    text: &Text<'a>,
-    tokens: &[Token<'a>],
-    at: &mut usize,
-    close: usize,
-) -> Result<Vec<Attribute<'a>>, EffectError> {
-    let mut attributes: Vec<Attribute<'_>> = Vec::new();
-    while *at < close && tokens[*at].text == "@" {
-        let (attribute, behind) = attributes::read(text, tokens, *at)?;
-        attributes::check_name(text, &attribute)?;
-        if attributes.iter().any(|other| other.name == attribute.name) {
-            let message = format!("@{} stands twice before one parameter", attribute.name);
-            return Err(attribute.error(text, message));
-        }
-        attributes.push(attribute);
-        *at = behind;
-    }
-    Ok(attributes)
-}
-
-/// The name at `at` of the member that begins with `first`, and the indices of its type, which is not empty.
-fn name_and_type<'a>(
-    text: &Text<'a>,
-    tokens: &[Token<'a>],
-    first: Token<'a>,
-    at: usize,
-    close: usize,
-) -> Result<(Token<'a>, Range<usize>), EffectError> {
-    let name = tokens.get(at).copied().filter(Token::is_name);
-    let (Some(name), Some(colon)) = (name, tokens.get(at + 1)) else {
-        return Err(text.error(first.offset, 1, "a parameter has the form name: type"));
-    };
-    let end = (at + 2..close)
-        .find(|&index| tokens[index].text == ",")
-        .unwrap_or(close);
-    if colon.text != ":" || end <= at + 2 {
-        return Err(text.at(name, format!("the parameter {} needs a type", name.text)));
-    }
-    let mut types = tokens[at + 2..end].iter();
-    if let Some(token) = types.find(|token| [":", ";", "@"].contains(&token.text)) {
-        let message = format!("expected , between parameters, and found {}", token.text);
-        return Err(text.at(token, message));
-    }
-    Ok((name, at + 2..end))
-}
-
-/// Refuses names that presets, the command line or WGSL could not write.
-fn check_name(text: &Text<'_>, name: Token<'_>) -> Result<(), EffectError> {
-    let is_letter = |c: char| c.is_ascii_alphanumeric() || c == '_';
-    let is_plain = name.text.starts_with(|c: char| c.is_ascii_alphabetic())
-        && name.text.chars().all(is_letter);
-    let message = if !is_plain || name.text.len() > MAX_NAME_CHARS {
-        format!(
-            "the name of a parameter begins with a letter and has at most {MAX_NAME_CHARS} letters a to z, digits and _"
-        )
-    } else if words::is_reserved(name.text) {
-        format!(
-            "{} is a reserved word of WGSL; give the parameter another name",
-            name.text
-        )
-    } else if RESERVED.contains(&name.text) {
-        format!(
-            "a preset uses {} itself; give the parameter another name",
-            name.text
-        )
-    } else {
-        return Ok(());
-    };
-    Err(text.at(name, message))
-}
-
-/// The constants that the choices of an effect called `stem` are given: `INK_MODE_DOTS`.
-///
-/// # Errors
-/// Two choices make the same name.
-pub fn constants(
-    text: &Text<'_>,
-    stem: &str,
-    parameters: &Parameters,
-) -> Result<BTreeSet<String>, EffectError> {
-    let mut constants = BTreeSet::new();
-    for field in &parameters.fields {
-        let ValueType::Choice(words) = &field.value_type else {
-            continue;
-        };
-        for word in words {
-            let name = constant_name(stem, &field.name, word);
-            if constants.contains(&name) {
-                return Err(
-                    text.whole(format!("two words of choices both have the constant {name}; change a word or the name of a parameter"))
-                );
-            }
-            constants.insert(name);
-        }
-    }
-    Ok(constants)
-}
-
-/// The comment lines directly above byte `offset`, joined.
-fn documentation(text: &str, offset: usize) -> String {
-    let before = &text[..offset];
-    let begin = before.rfind('\n').map_or(0, |at| at + 1);
-    let mut lines: Vec<&str> = Vec::new();
-    for line in before[..begin].lines().rev() {
-        let Some(comment) = line
-            .trim()
-            .strip_prefix("//")
-            .filter(|comment| !comment.starts_with('@'))
-        else {
-            break;
-        };
-        lines.push(comment.trim_start_matches(['/', '!']).trim());
-    }
-    lines.reverse();
-    lines.join(" ").trim().chars().take(400).collect()
-}
 
 /// One member of the struct.
-struct Member<'a> {
-    text: &'a Text<'a>,
-    name: Token<'a>,
+pub struct Member<'a> {
+    pub text: &'a Text<'a>,
+    pub name: Token<'a>,
     /// Its type as it is written.
-    kind: &'a str,
-    attributes: &'a [Attribute<'a>],
+    pub kind: &'a str,
+    pub attributes: &'a [Attribute<'a>],
 }
 
 impl<'a> Member<'a> {
-    fn error(&self, message: impl Into<String>) -> EffectError {
+    pub fn error(&self, message: impl Into<String>) -> EffectError {
         self.text.at(self.name, message)
     }
 
-    fn attribute(&self, name: &str) -> Option<&'a Attribute<'a>> {
+    pub fn attribute(&self, name: &str) -> Option<&'a Attribute<'a>> {
         self.attributes
             .iter()
             .find(|attribute| attribute.name == name)
@@ -296,7 +67,7 @@ impl<'a> Member<'a> {
     }
 
     /// Where the text names the picture that this member is, after `known` others.
-    fn image(&self, image: &Attribute<'a>, known: usize) -> Result<Range<usize>, EffectError> {
+    pub fn image(&self, image: &Attribute<'a>, known: usize) -> Result<Range<usize>, EffectError> {
         let is_other = |other: &&Attribute<'_>| other.name != "image";
         if let Some(other) = self.attributes.iter().find(is_other) {
             let message = format!("@{} and @image exclude each other", other.name);
@@ -330,13 +101,28 @@ impl<'a> Member<'a> {
             })
     }
 
-    /// The registry's entry, the WGSL type, and the components of the default. `known` are the
-    /// fields declared so far.
-    fn param(
-        &self,
-        known: &[Arc<Field>],
-        doc: &str,
-    ) -> Result<(Param, WgslType, Vec<f64>), EffectError> {
+    /// What the member is given.
+    pub fn given(&self, given: &Attribute<'a>) -> Result<Given, EffectError> {
+        if let Some(other) = self.attributes.iter().find(|other| other.name != "given") {
+            let message = format!("@{} and @given exclude each other", other.name);
+            return Err(other.error(self.text, message));
+        }
+        let mut all = Given::ALL.into_iter();
+        let Some(found) = all.find(|known| given.arguments == [known.name()]) else {
+            let names = Given::ALL.map(Given::name).join(", ");
+            return Err(given.error(self.text, format!("@given takes one of {names}")));
+        };
+        let kind: String = self.kind.split_whitespace().collect();
+        let wanted = found.wgsl().name();
+        if kind != wanted && !(kind == "vec4f" && wanted == "vec4<f32>") {
+            let message = format!("@given({}) is {wanted}, not {kind}", found.name());
+            return Err(given.error(self.text, message));
+        }
+        Ok(found)
+    }
+
+    /// The registry's entry, the WGSL type, and the components of the default.
+    pub fn param(&self, doc: &str) -> Result<(Param, WgslType, Vec<f64>), EffectError> {
         let kind: String = self.kind.split_whitespace().collect();
         let (value_type, wgsl, default) = match kind.as_str() {
             "f32" => {
@@ -374,12 +160,12 @@ impl<'a> Member<'a> {
                 )));
             }
         };
-        let param = self.with_options(Param::new(self.name.text, doc, value_type), known)?;
+        let param = self.with_options(Param::new(self.name.text, doc, value_type))?;
         Ok((param, wgsl, default))
     }
 
     /// The parameter with what its other attributes say.
-    fn with_options(&self, mut param: Param, known: &[Arc<Field>]) -> Result<Param, EffectError> {
+    fn with_options(&self, mut param: Param) -> Result<Param, EffectError> {
         let value_type = param.value_type.clone();
         if self.attribute("range").is_some() {
             let (range, _) = self.range("@range(min, max, default)")?;
@@ -415,6 +201,19 @@ impl<'a> Member<'a> {
             )?;
             (param.hard, param.soft) = ([ends[0], ends[1]], soft);
         }
+        if let Some(soft) = self.attribute("soft") {
+            let ends = soft.numbers(self.text, (2, 2), "the ends of the sliders of a point")?;
+            let [low, high] = param.hard;
+            if value_type != ValueType::Point
+                || !(low <= ends[0] && ends[0] < ends[1] && ends[1] <= high)
+            {
+                return Err(soft.error(
+                    self.text,
+                    "@soft belongs to a point, and its range must be ascending and lie inside that of @hard",
+                ));
+            }
+            param.soft = [ends[0], ends[1]];
+        }
         if let Some(unit) = self.attribute("unit") {
             let [unit_text] = unit.arguments[..] else {
                 return Err(unit.error(self.text, "@unit takes one unit, for instance m or px"));
@@ -431,13 +230,32 @@ impl<'a> Member<'a> {
             param = param.unit(unit_text);
         }
         if let Some(log) = self.attribute("log") {
-            if value_type != ValueType::F32 || param.soft[0] <= 0.0 || !log.arguments.is_empty() {
+            let is_number = matches!(value_type, ValueType::F32 | ValueType::U32);
+            if !is_number || param.soft[0] <= 0.0 || !log.arguments.is_empty() {
                 return Err(log.error(
                     self.text,
-                    "@log belongs to an f32 whose @range begins above 0, and takes nothing",
+                    "@log belongs to an f32 or u32 whose @range begins above 0, and takes nothing",
                 ));
             }
             param = param.log(true);
+        }
+        for name in ["height", "depth"] {
+            let Some(attribute) = self.attribute(name) else {
+                continue;
+            };
+            if value_type != ValueType::F32
+                || param.unit.is_empty()
+                || !attribute.arguments.is_empty()
+            {
+                return Err(attribute.error(
+                    self.text,
+                    format!("@{name} belongs to an f32 with a @unit, and takes nothing"),
+                ));
+            }
+            (param.height, param.depth) = (
+                param.height || name == "height",
+                param.depth || name == "depth",
+            );
         }
         if let Some(default) = self.attribute("default")
             && !matches!(value_type, ValueType::Choice(_))
@@ -446,9 +264,6 @@ impl<'a> Member<'a> {
                 self.text,
                 "@default belongs to @choice; other widgets take the default themselves",
             ));
-        }
-        if let Some(when) = self.attribute("when") {
-            param.when = Some(self.condition(when, known)?);
         }
         Ok(param)
     }
@@ -566,45 +381,34 @@ impl<'a> Member<'a> {
             }
         }
     }
+}
 
-    /// `@when(mode, word, …)`.
-    fn condition(
-        &self,
-        when: &Attribute<'_>,
-        known: &[Arc<Field>],
-    ) -> Result<(String, Vec<String>), EffectError> {
-        let usage = "@when takes the name of a choice above and some of its words";
-        let Some((name, words)) = when
-            .arguments
-            .split_first()
-            .filter(|(_, words)| !words.is_empty())
-        else {
-            return Err(when.error(self.text, usage));
-        };
-        let choice = known.iter().find(|field| field.name == *name);
-        let Some((field, ValueType::Choice(allowed))) =
-            choice.map(|field| (field, &field.value_type))
-        else {
-            return Err(when.error(
-                self.text,
-                format!("{usage}; there is no choice {name} above"),
-            ));
-        };
-        if let Some(unknown) = words
-            .iter()
-            .find(|word| !allowed.iter().any(|known| known == *word))
-        {
-            return Err(when.error(
-                self.text,
-                format!(
-                    "{name} has no word {unknown}; it has {}",
-                    allowed.join(", ")
-                ),
-            ));
-        }
-        Ok((
-            field.name.clone(),
-            words.iter().map(|&word| word.into()).collect(),
-        ))
+/// `@when(mode, word, …)`.
+pub fn condition(
+    text: &Text<'_>,
+    when: &Attribute<'_>,
+    fields: &[Field],
+) -> Result<(String, Vec<String>), EffectError> {
+    let usage = "@when takes the name of a choice and some of its words";
+    let Some((name, words)) = when
+        .arguments
+        .split_first()
+        .filter(|(_, words)| !words.is_empty())
+    else {
+        return Err(when.error(text, usage));
+    };
+    let choice = fields.iter().find(|field| field.name == *name);
+    let Some(ValueType::Choice(allowed)) = choice.map(|field| &field.value_type) else {
+        return Err(when.error(text, format!("{usage}; there is no choice {name}")));
+    };
+    let is_unknown = |word: &&&str| !allowed.iter().any(|known| known == **word);
+    if let Some(unknown) = words.iter().find(is_unknown) {
+        let message = format!(
+            "{name} has no word {unknown}; it has {}",
+            allowed.join(", ")
+        );
+        return Err(when.error(text, message));
     }
+    let words = words.iter().map(|&word| word.into()).collect();
+    Ok(((*name).into(), words))
 }
