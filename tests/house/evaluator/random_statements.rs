@@ -1,9 +1,9 @@
-//! Random programs on integers, against direct execution.
+//! Random programs on integers, with random expressions, against direct execution.
 
-use proptest::prelude::*;
 use rasterlab::evaluator::{NoHost, Word};
+use rasterlab_fuzz::stress::scenes::for_seeds;
 
-use super::common::{Random, program};
+use super::common::{OPERATORS, Random, program};
 
 type V = [i32; 4];
 
@@ -240,12 +240,19 @@ impl Generator<'_> {
     }
 
     fn number(&mut self, names: &Names, depth: u32) -> Read<i32> {
-        let kind = self.random.u32(if depth > 2 { 3 } else { 6 });
+        let kind = self.random.u32(if depth > 2 { 3 } else { 9 });
         let (at, letter) = self.component();
         if kind == 0 {
             let value = self.random.bits() as i32 >> self.random.u32(31);
-            let text = format!("bitcast<i32>({}u)", value.cast_unsigned());
+            // With a variable: constant expressions that overflow would not compile.
+            let text = format!("(bitcast<i32>({}u) + zero)", value.cast_unsigned());
             return read(text, move |_| value);
+        }
+        if kind > 5 {
+            let (operator, of) = OPERATORS[self.random.u32(OPERATORS.len() as u32) as usize];
+            let [a, b] = [0, 1].map(|_| self.number(names, depth + 1));
+            let text = operator.replace('A', &a.text).replace('B', &b.text);
+            return read(text, move |state| of((a.value)(state), (b.value)(state)));
         }
         if kind < 3 {
             let Read { text, value } = self.vector(names, depth + 1);
@@ -399,26 +406,40 @@ impl Generator<'_> {
     }
 }
 
-proptest! {
-    #![proptest_config(ProptestConfig { cases: std::env::var("PROPTEST_CASES").ok().and_then(|cases| cases.parse().ok()).unwrap_or(256), failure_persistence: None, ..ProptestConfig::default() })]
-
-    #[test]
-    fn statements(seed in any::<u64>()) {
-        let mut random = Random(seed);
-        let mut generator = Generator { random: &mut random, names: 0, budget: 40 };
+#[test]
+fn statements() {
+    for_seeds(256, |rng| {
+        let mut random = Random(u64::from(rng.next_u32()) << 32 | u64::from(rng.next_u32()));
+        let mut generator = Generator {
+            random: &mut random,
+            names: 0,
+            budget: 40,
+        };
         let (body, run) = generator.block(0, &mut Vec::new());
-        let source = format!("{PRELUDE}\nfn f(a: vec4i, b: vec4i) -> vec4i {{\nvar s: S;\ns.v = a;\nvar w = b;\n{body}return {RESULT};\n}}\n");
+        let source = format!(
+            "{PRELUDE}\nfn f(a: vec4i, b: vec4i) -> vec4i {{\nvar s: S;\ns.v = a;\nvar w = b;\n{body}return {RESULT};\n}}\n"
+        );
         let program = program(&source, "f");
         let mut machine = program.machine();
         for _ in 0..4 {
-            let arguments: Vec<i32> = (0..8).map(|_| random.bits() as i32 >> random.u32(30)).collect();
-            let mut state = State { g: [1, 2, 3, 4], ..State::default() };
+            let arguments: Vec<i32> = (0..8)
+                .map(|_| random.bits() as i32 >> random.u32(30))
+                .collect();
+            let mut state = State {
+                g: [1, 2, 3, 4],
+                ..State::default()
+            };
             state.s.v.copy_from_slice(&arguments[..4]);
             state.w.copy_from_slice(&arguments[4..]);
-            let expected = if run(&mut state) { state.w } else { result(&state) };
+            let expected = if run(&mut state) {
+                state.w
+            } else {
+                result(&state)
+            };
             let words: Vec<Word> = arguments.iter().map(|&x| Word::from_i32(x)).collect();
-            let given: Vec<i32> = machine.call(&words, &mut NoHost).expect("it ends").iter().map(|word| word.to_i32()).collect();
-            prop_assert_eq!(given, expected, "{} at {:?}", source, arguments);
+            let given = machine.call(&words, &mut NoHost).expect("it ends");
+            let given: Vec<i32> = given.iter().map(|word| word.to_i32()).collect();
+            assert_eq!(given, expected, "{source} at {arguments:?}");
         }
-    }
+    });
 }
