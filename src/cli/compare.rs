@@ -7,7 +7,7 @@ use super::{
     backend::{Backend, scene_of},
     error::{CliError, Exit},
     files::{self, Names},
-    open::open,
+    open::open_as,
     streams::{Streams, number},
 };
 use crate::{
@@ -107,10 +107,7 @@ fn side(
             triangle_id: None,
         });
     }
-    let mut preset_file = open(common, what)?;
-    if let Some(size) = args.size {
-        preset_file.preset.output.resize(size);
-    }
+    let preset_file = open_as(common, what, args.size, None, None)?;
     let backend = match backend {
         Some(backend) => backend,
         None => backend.insert(Backend::open(common, streams)?),

@@ -8,7 +8,7 @@ use super::{
     args::{Common, Explain},
     backend::{Backend, scene_of},
     error::{CliError, Exit},
-    open::{named, open},
+    open::{named, open_as},
     streams::{Streams, table},
 };
 use crate::{
@@ -22,10 +22,7 @@ use crate::{
 };
 
 pub fn run(common: &Common, args: &Explain, streams: &mut Streams) -> Result<Exit, CliError> {
-    let mut preset_file = open(common, &args.input)?;
-    if let Some(size) = args.size {
-        preset_file.preset.output.resize(size);
-    }
+    let preset_file = open_as(common, &args.input, args.size, None, None)?;
     let scene = scene_of(common, &preset_file, streams)?;
     // Without an adapter there is no plan, but the preset can be described.
     let backend = match Backend::open(common, streams) {

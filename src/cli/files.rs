@@ -259,21 +259,4 @@ mod tests {
             assert!(expand(wrong, &names(), 0).is_err(), "{wrong}");
         }
     }
-
-    #[test]
-    fn nothing_is_overwritten_without_force() {
-        let folder = tempfile::tempdir().unwrap();
-        let at = |name: &str| folder.path().join(name).to_string_lossy().into_owned();
-        std::fs::write(at("a.png"), "x").unwrap();
-        std::fs::write(at("b_1.png"), "x").unwrap();
-        assert!(target(&at("a.png"), &names(), false).is_err());
-        assert_eq!(
-            target(&at("a.png"), &names(), true).unwrap(),
-            PathBuf::from(at("a.png"))
-        );
-        assert_eq!(
-            target(&at("b_{n}.png"), &names(), false).unwrap(),
-            PathBuf::from(at("b_2.png"))
-        );
-    }
 }

@@ -9,6 +9,38 @@ use crate::{
     preset_file::{self, GalleryEntry, PresetError, PresetFile},
 };
 
+/// As [`open`], with the size, the time and the tier of a picture instead of the preset's own.
+pub fn open_as(
+    common: &Common,
+    what: &str,
+    size: Option<[u32; 2]>,
+    time_s: Option<f64>,
+    tier: Option<&str>,
+) -> Result<PresetFile, CliError> {
+    let mut preset_file = open(common, what)?;
+    retake(&mut preset_file, size, time_s, tier)?;
+    Ok(preset_file)
+}
+
+/// Gives a preset the size, the time and the tier of a picture.
+pub fn retake(
+    preset_file: &mut PresetFile,
+    size: Option<[u32; 2]>,
+    time_s: Option<f64>,
+    tier: Option<&str>,
+) -> Result<(), CliError> {
+    if let Some(size) = size {
+        preset_file.preset.output.resize(size);
+    }
+    if let Some(time_s) = time_s {
+        preset_file::set(preset_file, "clock.time_s", &format!("{time_s:?}"))?;
+    }
+    if let Some(tier) = tier {
+        preset_file::set(preset_file, "accuracy.tier", tier)?;
+    }
+    Ok(())
+}
+
 /// Opens a preset, puts the look of `--preset` on its scene, and applies `--unset`, then `--set`. Of
 /// a picture that names a model outside of its folder only the look is taken.
 pub fn open(common: &Common, what: &str) -> Result<PresetFile, CliError> {

@@ -9,7 +9,7 @@ use super::{
     backend::{Backend, scene_of},
     error::{CliError, Exit},
     files,
-    open::open,
+    open::open_as,
     streams::Streams,
 };
 use crate::{
@@ -20,10 +20,7 @@ use crate::{
 const PAGE: &str = include_str!("page.html");
 
 pub fn run(common: &Common, args: &Page, streams: &mut Streams) -> Result<Exit, CliError> {
-    let mut preset_file = open(common, &args.input)?;
-    if let Some(size) = args.size {
-        preset_file.preset.output.resize(size);
-    }
+    let preset_file = open_as(common, &args.input, args.size, None, None)?;
     let size = preset_file.preset.output.size;
     if size.contains(&0) {
         return Err(CliError::usage(format!(

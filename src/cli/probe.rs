@@ -11,7 +11,7 @@ use super::{
     args::Common,
     backend::{Backend, scene_of},
     error::{CliError, Exit},
-    open::{named, open},
+    open::{named, open_as},
     streams::{Streams, table},
     values::size,
 };
@@ -51,12 +51,8 @@ fn pixel(text: &str) -> Result<[u32; 2], String> {
 }
 
 pub fn run(common: &Common, args: &Probe, streams: &mut Streams) -> Result<Exit, CliError> {
-    let mut preset_file = open(common, &args.input)?;
-    let preset = &mut preset_file.preset;
-    if let Some(size) = args.size {
-        preset.output.resize(size);
-    }
-    let (size, pixel) = (preset.output.size, args.pixel);
+    let preset_file = open_as(common, &args.input, args.size, None, None)?;
+    let (size, pixel) = (preset_file.preset.output.size, args.pixel);
     if pixel[0] >= size[0] || pixel[1] >= size[1] {
         return Err(CliError::usage(format!(
             "--pixel {},{}: {} has {} x {} pixels, so columns go from 0 to {} and rows from 0 to {}",

@@ -8,7 +8,7 @@ use super::{
     backend::{Backend, scene_of, scene_with_warnings},
     error::{CliError, Exit},
     files::{self, Names},
-    open::{named, open},
+    open::{named, open, retake},
     streams::Streams,
 };
 use crate::preset_file::{self, PresetFile};
@@ -171,15 +171,7 @@ fn open_with_flags(common: &Common, args: &Render, what: &str) -> Result<PresetF
         })?;
         preset_file.preset.camera = Some(camera);
     }
-    if let Some(size) = args.size {
-        preset_file.preset.output.resize(size);
-    }
-    if let Some(time) = args.time {
-        preset_file::set(&mut preset_file, "clock.time_s", &format!("{time:?}"))?;
-    }
-    if let Some(tier) = &args.tier {
-        preset_file::set(&mut preset_file, "accuracy.tier", tier)?;
-    }
+    retake(&mut preset_file, args.size, args.time, args.tier.as_deref())?;
     if !args.bare {
         preset_file.check_savable()?;
     }

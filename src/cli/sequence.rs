@@ -11,7 +11,7 @@ use super::{
     backend::{Backend, scene_of},
     error::{CliError, Exit},
     files::{self, Names},
-    open::{named, open},
+    open::{named, open, open_as},
     render,
     streams::Streams,
 };
@@ -22,7 +22,7 @@ use crate::{
     },
     frame::Frame,
     preset::Preset,
-    preset_file::{self, PresetFile, Provenance},
+    preset_file::{PresetFile, Provenance},
     scene::Scene,
 };
 
@@ -150,13 +150,8 @@ fn print_count(schedule: &Schedule, streams: &mut Streams) -> Result<Exit, CliEr
 
 /// Opens the preset with `--size` and `--tier`, which are short for `--set`.
 fn open_with_flags(common: &Common, args: &Sequence) -> Result<PresetFile, CliError> {
-    let mut preset_file = open(common, &args.input)?;
-    if let Some(size) = args.size {
-        preset_file.preset.output.resize(size);
-    }
-    if let Some(tier) = &args.tier {
-        preset_file::set(&mut preset_file, "accuracy.tier", tier)?;
-    }
+    let tier = args.tier.as_deref();
+    let mut preset_file = open_as(common, &args.input, args.size, None, tier)?;
     preset_file.preset.accuracy = preset_file.preset.accuracy.anti_aliased();
     let [width, height] = preset_file.preset.output.size;
     if width == 0 || height == 0 {

@@ -10,7 +10,7 @@ use super::{
     contact_sheet::{ContactSheet, Picture, size_of},
     error::{CliError, Exit},
     files,
-    open::open,
+    open::open_as,
     render::names,
     streams::Streams,
 };
@@ -122,17 +122,9 @@ pub fn run(common: &Common, args: &Sweep, streams: &mut Streams) -> Result<Exit,
 
 /// Opens the preset with `--size`, `--time` and `--tier`, which are short for `--set`.
 fn open_with_flags(common: &Common, args: &Sweep) -> Result<PresetFile, CliError> {
-    let mut preset_file = open(common, &args.input)?;
-    if let Some(size) = args.size {
-        preset_file.preset.output.resize(size);
-    }
+    let tier = args.tier.as_deref();
+    let mut preset_file = open_as(common, &args.input, args.size, args.time, tier)?;
     preset_file.preset.accuracy = preset_file.preset.accuracy.anti_aliased();
-    if let Some(time) = args.time {
-        preset_file::set(&mut preset_file, "clock.time_s", &format!("{time:?}"))?;
-    }
-    if let Some(tier) = &args.tier {
-        preset_file::set(&mut preset_file, "accuracy.tier", tier)?;
-    }
     if preset_file.preset.output.size.contains(&0) {
         return Err(CliError::usage(
             "--size: a sheet needs pictures of at least 1x1 pixels",

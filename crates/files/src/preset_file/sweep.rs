@@ -269,28 +269,8 @@ mod tests {
             vary(&["facet.amount=0..1:10"]).map(|sheet| (sheet.columns, sheet.rows())),
             Ok((4, 3))
         );
-        for (wrong, why) in [
-            (&["facet.amount=0..2:3"][..], "facet.amount"),
-            (
-                &["facet.amount=0..1:3", "facet.amount=0..1:3"],
-                "varied twice",
-            ),
-            (
-                &[
-                    "facet.amount=0..1:3",
-                    "facet.front=0..1:3",
-                    "facet.width=0.1,0.2",
-                ],
-                "one or two",
-            ),
-            (
-                &["facet.amount=0..1:100", "facet.front=0..1:100"],
-                "at most 1024",
-            ),
-            (&["facet.amonut=0..1:3"], "amount"),
-        ] {
-            let error = vary(wrong).expect_err(why);
-            assert!(error.contains(why), "{error}");
-        }
+        let many = ["facet.amount=0..1:100", "facet.front=0..1:100"];
+        let error = vary(&many).expect_err("too many cells");
+        assert!(error.contains("at most 1024"), "{error}");
     }
 }

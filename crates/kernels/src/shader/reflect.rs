@@ -59,13 +59,13 @@ pub fn capabilities() -> Capabilities {
 
 /// Reads and validates a linked module; 64-bit atomics only where `int64` says so.
 pub fn reflect(linked: &Linked, int64: bool) -> Result<Reflected, ShaderError> {
-    let module = naga::front::wgsl::parse_str(&linked.text).map_err(|error| {
-        let line = error.location(&linked.text).map_or(1, |l| l.line_number);
-        ShaderError {
-            origin: linked.origin(line),
-            message: error.emit_to_string(&linked.text),
-        }
-    })?;
+    let text = &linked.text;
+    let fault = |place: Option<naga::SourceLocation>, message| ShaderError {
+        origin: linked.origin(place.map_or(1, |place| place.line_number)),
+        message,
+    };
+    let module = naga::front::wgsl::parse_str(text)
+        .map_err(|error| fault(error.location(text), error.emit_to_string(text)))?;
     let mut capabilities = capabilities();
     if int64 {
         capabilities |= Capabilities::SHADER_INT64
@@ -74,13 +74,7 @@ pub fn reflect(linked: &Linked, int64: bool) -> Result<Reflected, ShaderError> {
     }
     let info = Validator::new(ValidationFlags::all(), capabilities)
         .validate(&module)
-        .map_err(|error| {
-            let line = error.location(&linked.text).map_or(1, |l| l.line_number);
-            ShaderError {
-                origin: linked.origin(line),
-                message: error.emit_to_string(&linked.text),
-            }
-        })?;
+        .map_err(|error| fault(error.location(text), error.emit_to_string(text)))?;
     Ok(Reflected { module, info })
 }
 
