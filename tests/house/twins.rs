@@ -11,7 +11,7 @@ use rasterlab::{
         EFFECTS, Effect,
         hooks::{
             Finish, Hooks, Image, ImageAt, Lens, PassInput, Picture, Pixel, Sample, Signs, Surface,
-            TriangleSetup, Vertex,
+            SurfaceFunction, TriangleSetup, Vertex,
         },
     },
     params::ValueType,
@@ -199,8 +199,11 @@ fn surface_functions_agree() {
             let mut rng = Rng(11);
             for turn in 0..TRIES {
                 let (words, s) = (parameters(&mut rng, effect, turn), surface(&mut rng));
-                let of =
-                    |hooks: &Hooks| hooks.surface.as_ref().expect("it is on the hook")(s, &words);
+                let of = |hooks: &Hooks| {
+                    let mut all = [s];
+                    hooks.surface.as_ref().expect("it is on the hook")(&mut all, &words);
+                    all[0]
+                };
                 let (given, expected) = (of(hooks), of(&effect.hooks));
                 let floats = |s: &Surface| {
                     let vectors = [
@@ -268,7 +271,9 @@ fn vertex_functions_agree() {
                     cell_px: whole(&mut rng, 3),
                 };
                 let of = |hooks: &Hooks| {
-                    (hooks.vertex.as_ref().expect("it is on the hook").moved)(v, &words)
+                    let mut all = [v];
+                    (hooks.vertex.as_ref().expect("it is on the hook").moved)(&mut all, &words);
+                    all[0]
                 };
                 let (given, expected) = (of(hooks), of(&effect.hooks));
                 same(
@@ -341,9 +346,13 @@ fn sample_functions_agree() {
                         setup: expected,
                     };
                     let of = |hooks: &Hooks| {
+                        let mut drawn = [true];
                         (hooks.sample.as_ref().expect("it is on the hook").is_drawn)(
-                            &sample, &words,
-                        )
+                            &[sample],
+                            &words,
+                            &mut drawn,
+                        );
+                        drawn[0]
                     };
                     let (given, expected) = (of(hooks), of(&effect.hooks));
                     assert_eq!(
@@ -418,9 +427,11 @@ fn image_functions_agree() {
                         step_offset: 0.0,
                     };
                     let of = |hooks: &Hooks| {
+                        let mut all = [q];
                         (hooks.image.as_ref().expect("it is on the hook").finish)(
-                            q, &picture, &words,
-                        )
+                            &mut all, &picture, &words,
+                        );
+                        all[0]
                     };
                     let (given, expected) = (of(hooks), of(&effect.hooks));
                     same(
@@ -521,7 +532,7 @@ fn image_passes_agree() {
                         };
                         let of = |hooks: &Hooks| {
                             let hook = hooks.passes.as_ref().expect("it has passes");
-                            (hook.run)(index, &at, &words).to_array()
+                            (hook.run)(index, &[at], &words)[0].to_array()
                         };
                         let (given, expected) = (of(hooks), of(&effect.hooks));
                         same(effect, &pass.name, &given, &expected, &(&words, i));
@@ -567,7 +578,12 @@ fn a_duplicate_of_an_effect_is_read_and_says_the_same() {
                 assert_eq!(own_words, mine.defaults, "{}: the defaults", effect.name);
             }
             let input = surface(&mut rng);
-            let [given, expected] = [given(input, &own_words), expected(input, &words)];
+            let of = |function: &SurfaceFunction, words: &[u32]| {
+                let mut all = [input];
+                function(&mut all, words);
+                all[0]
+            };
+            let [given, expected] = [of(&**given, &own_words), of(&**expected, &words)];
             same(
                 &effect,
                 "color",

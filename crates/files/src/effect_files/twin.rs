@@ -195,7 +195,7 @@ fn perturbed<const N: usize>(values: [f64; N], index: u32, strength: f64) -> [f6
 /// The surface hook. To one side of a step the function is evaluated in f32, as `rounded`: what
 /// constants alone decide is moved by no input.
 pub fn surface(exact: Function, rounded: Function) -> Arc<SurfaceFunction> {
-    Arc::new(move |mut s: Surface, words: &[u32]| {
+    let apply = move |mut s: Surface, words: &[u32]| {
         let function = if s.step_offset > 0.0 {
             &rounded
         } else {
@@ -255,6 +255,9 @@ pub fn surface(exact: Function, rounded: Function) -> Arc<SurfaceFunction> {
             color: DVec4::NAN,
             ..s
         })
+    };
+    Arc::new(move |surfaces: &mut [Surface], words: &[u32]| {
+        surfaces.iter_mut().for_each(|s| *s = apply(*s, words));
     })
 }
 
@@ -349,6 +352,11 @@ pub fn image(exact: Function, rounded: Function, reads_previous: bool) -> ImageH
             ..q
         })
     };
+    let finish = move |pixels: &mut [Pixel], picture: &Picture<'_>, words: &[u32]| {
+        pixels
+            .iter_mut()
+            .for_each(|q| *q = finish(*q, picture, words));
+    };
     ImageHook {
         reads_previous,
         finish: Arc::new(finish),
@@ -416,6 +424,9 @@ pub fn passes(passes: Vec<ImagePass>, exact: Vec<Function>, rounded: Vec<Functio
             .call(arguments.0, words, &mut PassHost(at), read)
             .unwrap_or(DVec4::NAN)
     };
+    let run = move |index: usize, pixels: &[ImageAt<'_>], words: &[u32]| {
+        pixels.iter().map(|at| run(index, at, words)).collect()
+    };
     PassHook {
         passes,
         run: Arc::new(run),
@@ -436,6 +447,11 @@ pub fn sample(function: Function) -> SampleHook {
                 result.word().to_bool()
             })
             .unwrap_or(true)
+    };
+    let is_drawn = move |samples: &[Sample], words: &[u32], drawn: &mut [bool]| {
+        for (sample, drawn) in samples.iter().zip(drawn) {
+            *drawn &= is_drawn(sample, words);
+        }
     };
     SampleHook {
         has_setup: false,
@@ -529,7 +545,11 @@ pub fn vertex(double: Function, single: Function, needs_triangle: bool) -> Verte
         )
     };
     let (moving, fields) = (double.clone(), double.members.clone());
-    let moved = move |v: Vertex, words: &[u32]| evaluate(&moving, &v, words);
+    let moved = move |vertices: &mut [Vertex], words: &[u32]| {
+        vertices
+            .iter_mut()
+            .for_each(|v| *v = evaluate(&moving, v, words));
+    };
     let limit = move |_: f64, words: &[u32]| {
         lengths(&fields)
             .map(|field| field.get(words)[0].abs())

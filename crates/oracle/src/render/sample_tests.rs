@@ -215,16 +215,19 @@ impl<'a> SampleTests<'a> {
                 return true;
             }
             let setup = effect.setup.map_or([0; 4], |index| setups[index]);
+            let mut is_drawn = true;
             (effect.hook.is_drawn)(
-                &Sample {
+                &[Sample {
                     x,
                     y,
                     triangle: triangle.id,
                     areas: parts,
                     setup,
-                },
+                }],
                 effect.words,
-            )
+                std::slice::from_mut(&mut is_drawn),
+            );
+            is_drawn
         };
         let passes_mask = |(scene, draws): (&Scene, &[Draw])| {
             let draw = draw_of(scene, draws, triangle.id).expect("a triangle belongs to a draw");

@@ -52,47 +52,65 @@ pub fn surface_colors(
     let background = background(shot.view);
     let ranks = ranks(shot, geometry)?;
     let light = Light::of(shot, geometry);
-    let color = |y: usize, found: Option<(&SurfaceTriangle, Surface)>| {
-        let Some((triangle, surface)) = found else {
-            return background[y];
-        };
+    let visit = |y: usize, found: Option<(&SurfaceTriangle, Surface)>| {
+        let (triangle, surface) = found.ok_or(background[y])?;
         let id = surface.triangle_id;
         let rank = ranks.get(id as usize).copied().unwrap_or(0.0);
-        shaded(
-            shot,
-            triangle,
-            Surface { rank, ..surface },
-            light.as_ref(),
-            perturbation.color_step,
-        )
+        let surface = Surface { rank, ..surface };
+        let step = perturbation.color_step;
+        Ok((
+            triangle.scopes,
+            lit_surface(triangle, surface, light.as_ref(), step),
+        ))
     };
-    each_surface_in(rows, shot, triangle_ids, geometry, perturbation, color)
+    let shade = |row: Vec<Result<(u32, Surface), DVec4>>| {
+        let mut colors: Vec<DVec4> = Vec::with_capacity(row.len());
+        for run in row.chunk_by(|a, b| scopes_of(a) == scopes_of(b)) {
+            for part in run.chunks(TOGETHER) {
+                let mut surfaces: Vec<Surface> =
+                    part.iter().flatten().map(|(_, surface)| *surface).collect();
+                let scopes = scopes_of(&part[0]).unwrap_or_default();
+                shot.stack.shade_all(&mut surfaces, scopes, &shot.light());
+                colors.extend(surfaces.iter().map(|surface| encoded(surface.color)));
+                colors.extend(part.iter().filter_map(|pixel| pixel.as_ref().err()));
+            }
+        }
+        colors
+    };
+    each_row(
+        rows,
+        shot,
+        triangle_ids,
+        geometry,
+        perturbation,
+        visit,
+        shade,
+    )
 }
 
-/// The gamma-encoded color of a surface of `triangle`, whose steps are moved by `color_step`.
-pub fn shaded(
-    shot: &Shot,
+/// Pixels that are shaded together, so that an effect's text is evaluated for all of them at once.
+pub const TOGETHER: usize = 64;
+
+/// The scopes of the draw that a pixel shows, if it shows one.
+fn scopes_of(pixel: &Result<(u32, Surface), DVec4>) -> Option<u32> {
+    pixel.as_ref().ok().map(|(scopes, _)| *scopes)
+}
+
+/// A surface of `triangle` as the light reaches it, whose steps are moved by `color_step`.
+pub fn lit_surface(
     triangle: &SurfaceTriangle,
     surface: Surface,
     light: Option<&Light>,
     color_step: f64,
-) -> DVec4 {
+) -> Surface {
     let lit = light.map_or(0.0, |light| {
         light.arrives(&triangle.lit_point(&surface), triangle.id, color_step)
     });
-    encoded(
-        shot.stack
-            .shade(
-                Surface {
-                    lit,
-                    step_offset: color_step,
-                    ..surface
-                },
-                triangle.scopes,
-                &shot.light(),
-            )
-            .color,
-    )
+    Surface {
+        lit,
+        step_offset: color_step,
+        ..surface
+    }
 }
 
 /// Visits the row and the surface of every pixel before any surface effect, given the triangle of
@@ -104,18 +122,19 @@ pub fn each_surface<T: Send>(
     perturbation: &Perturbation,
     visit: impl Fn(usize, Option<(&SurfaceTriangle, Surface)>) -> T + Sync,
 ) -> Result<Vec<T>, Canceled> {
-    let rows = 0..shot.view.height;
-    each_surface_in(rows, shot, triangle_ids, geometry, perturbation, visit)
+    let (rows, all) = (0..shot.view.height, |row| row);
+    each_row(rows, shot, triangle_ids, geometry, perturbation, visit, all)
 }
 
-/// The same, only in `rows`.
-fn each_surface_in<T: Send>(
+/// The same, only in `rows`, and what `of_row` makes of all that `visit` gives in a row.
+fn each_row<V, T: Send>(
     rows: Range<u32>,
     shot: &Shot,
     triangle_ids: &[u32],
     geometry: &Geometry,
     perturbation: &Perturbation,
-    visit: impl Fn(usize, Option<(&SurfaceTriangle, Surface)>) -> T + Sync,
+    visit: impl Fn(usize, Option<(&SurfaceTriangle, Surface)>) -> V + Sync,
+    of_row: impl Fn(Vec<V>) -> Vec<T> + Sync,
 ) -> Result<Vec<T>, Canceled> {
     let width = shot.view.width.max(1) as usize;
     let checkpoint = checkpoint();
@@ -134,7 +153,7 @@ fn each_surface_in<T: Send>(
                     .map(|triangle| (triangle, triangle.surface(x, y, perturbation))),
             )
         };
-        Ok(ids.iter().enumerate().map(pixel).collect::<Vec<_>>())
+        Ok(of_row(ids.iter().enumerate().map(pixel).collect()))
     };
     let found = triangle_ids
         .par_chunks(width)
