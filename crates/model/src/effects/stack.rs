@@ -199,10 +199,15 @@ impl Stack {
 
     /// Moves a vertex of a draw with these `scopes` by every vertex effect in order.
     pub fn moved(&self, mut vertex: hooks::Vertex, scopes: u32) -> hooks::Vertex {
-        for (hook, words) in self.each_on(scopes, |hooks| hooks.vertex.as_ref()) {
-            (hook.moved)(std::slice::from_mut(&mut vertex), words);
-        }
+        self.move_all(std::slice::from_mut(&mut vertex), scopes);
         vertex
+    }
+
+    /// The same for vertices of draws with the same `scopes`, in place.
+    pub fn move_all(&self, vertices: &mut [hooks::Vertex], scopes: u32) {
+        for (hook, words) in self.each_on(scopes, |hooks| hooks.vertex.as_ref()) {
+            (hook.moved)(vertices, words);
+        }
     }
 
     /// How far the f32 side of [`Stack::moved`] may err, given the error bound of what it starts

@@ -64,18 +64,15 @@ pub fn surface_colors(
         ))
     };
     let shade = |row: Vec<Result<(u32, Surface), DVec4>>| {
-        let mut colors: Vec<DVec4> = Vec::with_capacity(row.len());
-        for run in row.chunk_by(|a, b| scopes_of(a) == scopes_of(b)) {
-            for part in run.chunks(TOGETHER) {
-                let mut surfaces: Vec<Surface> =
-                    part.iter().flatten().map(|(_, surface)| *surface).collect();
-                let scopes = scopes_of(&part[0]).unwrap_or_default();
-                shot.stack.shade_all(&mut surfaces, scopes, &shot.light());
-                colors.extend(surfaces.iter().map(|surface| encoded(surface.color)));
-                colors.extend(part.iter().filter_map(|pixel| pixel.as_ref().err()));
-            }
-        }
-        colors
+        let (scopes, mut surfaces): (Vec<u32>, Vec<Surface>) =
+            row.iter().flatten().copied().unzip();
+        shade_runs(shot, &scopes, &mut surfaces);
+        let mut colors = surfaces.into_iter().map(|surface| encoded(surface.color));
+        let of_pixel = |pixel: Result<_, DVec4>| match pixel {
+            Ok(_) => colors.next().unwrap_or_default(),
+            Err(background) => background,
+        };
+        row.into_iter().map(of_pixel).collect()
     };
     each_row(
         rows,
@@ -91,9 +88,15 @@ pub fn surface_colors(
 /// Pixels that are shaded together, so that an effect's text is evaluated for all of them at once.
 pub const TOGETHER: usize = 64;
 
-/// The scopes of the draw that a pixel shows, if it shows one.
-fn scopes_of(pixel: &Result<(u32, Surface), DVec4>) -> Option<u32> {
-    pixel.as_ref().ok().map(|(scopes, _)| *scopes)
+/// Shades surfaces by the effects that act on their draws, whose scopes are given.
+pub fn shade_runs(shot: &Shot, scopes: &[u32], mut surfaces: &mut [Surface]) {
+    for run in scopes.chunk_by(|a, b| a == b) {
+        let (own, others) = surfaces.split_at_mut(run.len());
+        for together in own.chunks_mut(TOGETHER) {
+            shot.stack.shade_all(together, run[0], &shot.light());
+        }
+        surfaces = others;
+    }
 }
 
 /// A surface of `triangle` as the light reaches it, whose steps are moved by `color_step`.
@@ -338,7 +341,7 @@ impl<'a> SurfaceTriangle<'a> {
         corners: [Corner; 3],
         side: f64,
     ) {
-        let moved = corners.map(|corner| evaluator.moved(corner));
+        let moved = evaluator.moved_all(&corners);
         for (position, vertex) in self.positions.iter_mut().zip(&moved) {
             *position += vertex.offset;
         }
