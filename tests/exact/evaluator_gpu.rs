@@ -111,7 +111,7 @@ fn lattice(words: &[u32]) -> Vec<[u32; 4]> {
 
 /// Runs all expressions on both sides; `is_same` gets the index of the expression, the input and
 /// both results.
-fn compare(
+pub fn compare(
     kind: &str,
     expressions: &[&str],
     words: &[u32],
@@ -163,7 +163,7 @@ fn compare(
     assert!(faults.is_empty(), "{}", faults.join("\n"));
 }
 
-const WHOLE: [u32; 17] = [
+pub const WHOLE: [u32; 17] = [
     0,
     1,
     2,
@@ -285,6 +285,8 @@ const EXACT: &[&str] = &[
     "modf(a).whole",
     "f32(i32(a))",
     "f32(u32(abs(a)))",
+    "f32(i32(a * 1e9))",
+    "f32(u32(a * 1e9))",
     "f32(a < b) + 2.0 * f32(a <= b) + 4.0 * f32(a == b)",
     "f32(pack4x8unorm(vec4f(a, b, c, 1.0)) >> 24u)",
     "unpack4x8unorm(bitcast<u32>(a)).z * 0.0",

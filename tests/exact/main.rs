@@ -14,6 +14,7 @@ mod device_lost;
 mod device_memory;
 mod draw_order;
 mod evaluator_gpu;
+mod evaluator_programs;
 mod extremes;
 mod grounds;
 mod hardware;

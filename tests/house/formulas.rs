@@ -21,19 +21,22 @@ fn enabled(name: &str, values: &[(&str, &[f64])]) -> EnabledEffect {
 
 fn shaded(effect: &EnabledEffect, surface: Surface) -> Surface {
     let shade = effect.effect.hooks.surface.as_ref();
-    shade.expect("it is on the hook")(surface, &effect.words)
+    let mut all = [surface];
+    shade.expect("it is on the hook")(&mut all, &effect.words);
+    all[0]
 }
 
 fn finished(effect: &EnabledEffect, picture: &Picture<'_>, color: DVec4, at: [u32; 2]) -> DVec4 {
     let [x, y] = at;
-    let pixel = Pixel {
+    let mut all = [Pixel {
         color,
         x,
         y,
         step_offset: 0.0,
-    };
+    }];
     let hook = effect.effect.hooks.image.as_ref();
-    (hook.expect("it is on the hook").finish)(pixel, picture, &effect.words).color
+    (hook.expect("it is on the hook").finish)(&mut all, picture, &effect.words);
+    all[0].color
 }
 
 /// A picture of one color.
@@ -84,7 +87,7 @@ fn passed(effect: &EnabledEffect, colors: [DVec3; 9]) -> DVec3 {
         input: &input,
     };
     let hook = effect.effect.hooks.passes.as_ref();
-    (hook.expect("it has passes").run)(0, &at, &effect.words).truncate()
+    (hook.expect("it has passes").run)(0, &[at], &effect.words)[0].truncate()
 }
 
 fn near(what: &str, given: impl Into<DVec3>, expected: [f64; 3], within: f64) {

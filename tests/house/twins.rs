@@ -121,8 +121,11 @@ fn surface_functions_agree() {
         let mut rng = Rng(11);
         for turn in 0..TRIES {
             let (words, s) = (parameters(&mut rng, effect, turn), surface(&mut rng));
-            let [given, expected] = [hooks, &effect.hooks]
-                .map(|hooks| hooks.surface.as_ref().expect("it is on the hook")(s, &words));
+            let [given, expected] = [hooks, &effect.hooks].map(|hooks| {
+                let mut all = [s];
+                hooks.surface.as_ref().expect("it is on the hook")(&mut all, &words);
+                all[0]
+            });
             same(
                 effect,
                 "surface",
@@ -163,8 +166,11 @@ fn vertex_functions_agree() {
                 triangle: whole(&mut rng, 1 << 20),
                 cell_px: whole(&mut rng, 3),
             };
-            let [given, expected] = [hooks, &effect.hooks]
-                .map(|hooks| (hooks.vertex.as_ref().expect("it is on the hook").moved)(v, &words));
+            let [given, expected] = [hooks, &effect.hooks].map(|hooks| {
+                let mut all = [v];
+                (hooks.vertex.as_ref().expect("it is on the hook").moved)(&mut all, &words);
+                all[0]
+            });
             let case = (&words, v);
             for part in [
                 |v: &Vertex| v.offset.to_array(),
@@ -223,7 +229,11 @@ fn sample_functions_agree() {
                     areas,
                     setup: expected,
                 };
-                let [given, expected] = both.map(|hook| (hook.is_drawn)(&sample, &words));
+                let [given, expected] = both.map(|hook| {
+                    let mut drawn = [true];
+                    (hook.is_drawn)(&[sample], &words, &mut drawn);
+                    drawn[0]
+                });
                 assert_eq!(
                     given, expected,
                     "{}: {sample:?} with {words:?}",
@@ -310,7 +320,7 @@ fn image_passes_agree() {
                     };
                     let [given, expected] = [hooks, &effect.hooks].map(|hooks| {
                         let hook = hooks.passes.as_ref().expect("it has passes");
-                        (hook.run)(index, &at, &words).to_array()
+                        (hook.run)(index, &[at], &words)[0].to_array()
                     });
                     same(effect, &pass.name, given, expected, &(&words, i));
                 }

@@ -6,7 +6,7 @@ use std::rc::Rc;
 
 use crate::instruction::{Instruction, Op};
 use crate::program::{Limits, Precision};
-use crate::scalar::evaluate;
+use crate::scalar::{One, evaluate};
 use crate::word::Word;
 
 /// A limit was reached.
@@ -108,9 +108,12 @@ pub(crate) struct Code {
     pub is_temporary: Vec<bool>,
     /// Registers of values that are read through an index.
     pub indexed: Vec<Range<u32>>,
+    /// Registers of arguments that are variables too.
+    pub variables: Vec<Range<u32>>,
     precision: Precision,
     limits: Limits,
-    is_constant: Vec<bool>,
+    /// Registers that never change.
+    pub is_constant: Vec<bool>,
     constants: HashMap<Word, u32>,
     tables: HashMap<Vec<Word>, u32>,
     /// Everything lowered so far, whether or not it made code.
@@ -124,6 +127,7 @@ impl Code {
             image: Vec::new(),
             is_temporary: Vec::new(),
             indexed: Vec::new(),
+            variables: Vec::new(),
             precision,
             limits,
             is_constant: Vec::new(),
@@ -195,10 +199,12 @@ impl Code {
     /// are constants.
     pub(crate) fn pure(&mut self, op: Op, a: u32, b: u32, c: u32) -> Result<u32, Full> {
         if let (Some(a), Some(b), Some(c)) = (self.known(a), self.known(b), self.known(c)) {
-            let word = match self.precision {
-                Precision::Double => evaluate::<false>(op, || a, || b, || c),
-                Precision::Single => evaluate::<true>(op, || a, || b, || c),
-            };
+            let mut word = Word::ZERO;
+            let one = One([a, b, c], &mut word);
+            match self.precision {
+                Precision::Double => evaluate::<false>(op, one),
+                Precision::Single => evaluate::<true>(op, one),
+            }
             return self.constant(word);
         }
         let d = self.allocate(1)?;

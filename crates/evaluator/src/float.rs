@@ -75,22 +75,14 @@ pub(crate) fn ldexp(x: f64, exponent: i32) -> f64 {
     x * 2f64.powi(step) * 2f64.powi(next) * 2f64.powi(exponent - step - next)
 }
 
-/// Toward zero, limited to the range of i32 as far as the precision has numbers in it; 0 for NaN.
-pub(crate) fn to_i32<const SINGLE: bool>(x: f64) -> i32 {
-    if SINGLE {
-        x.min(2147483520.0) as i32 * i32::from(!x.is_nan())
-    } else {
-        x as i32
-    }
+/// Toward zero, limited to the f32 numbers in the range of i32; 0 for NaN.
+pub(crate) fn to_i32(x: f64) -> i32 {
+    x.min(2147483520.0) as i32 * i32::from(!x.is_nan())
 }
 
-/// Toward zero, limited to the range of u32 as far as the precision has numbers in it; 0 for NaN.
-pub(crate) fn to_u32<const SINGLE: bool>(x: f64) -> u32 {
-    if SINGLE {
-        x.min(4294967040.0) as u32 * u32::from(!x.is_nan())
-    } else {
-        x as u32
-    }
+/// Toward zero, limited to the f32 numbers in the range of u32; 0 for NaN.
+pub(crate) fn to_u32(x: f64) -> u32 {
+    x.min(4294967040.0) as u32 * u32::from(!x.is_nan())
 }
 
 /// Bits of the half-precision float nearest to the f32 nearest to `x`, ties to even.

@@ -1,4 +1,4 @@
-//! Instructions of the register machine.
+//! Instructions of the machine.
 
 /// What an instruction does. Unless stated otherwise `d` is the register written and `a`, `b`, `c`
 /// are registers read.
@@ -137,6 +137,8 @@ pub(crate) enum Op {
     Fill,
     /// `c` words from register `a` + value of `b` to `d`.
     LoadIndexed,
+    /// The same, where all words are alike in every sample.
+    LoadTable,
     /// `c` words from `a` to register `d` + value of `b`.
     StoreIndexed,
     /// Function `d` of the host with `b` words of arguments at `a`, followed by `c` words of
@@ -180,6 +182,8 @@ impl Op {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Instruction {
     pub op: Op,
+    /// No sample that does not take part needs what is in `d`.
+    pub is_free: bool,
     pub d: u32,
     pub a: u32,
     pub b: u32,
@@ -188,13 +192,22 @@ pub(crate) struct Instruction {
 
 impl Instruction {
     pub(crate) fn new(op: Op, d: u32, a: u32, b: u32, c: u32) -> Instruction {
-        Instruction { op, d, a, b, c }
+        Instruction {
+            op,
+            is_free: false,
+            d,
+            a,
+            b,
+            c,
+        }
     }
 
     /// Steps that one execution counts.
     pub(crate) fn weight(&self) -> u64 {
         match self.op {
-            Op::Copy | Op::Fill | Op::LoadIndexed | Op::StoreIndexed => 1 + u64::from(self.c) / 4,
+            Op::Copy | Op::Fill | Op::LoadIndexed | Op::LoadTable | Op::StoreIndexed => {
+                1 + u64::from(self.c) / 4
+            }
             Op::External => 1 + u64::from(self.b) + u64::from(self.c),
             _ => 1,
         }

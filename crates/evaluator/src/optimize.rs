@@ -55,7 +55,7 @@ fn count_reads(all: &[Instruction], code: &Code, result: Range<usize>) -> Vec<u3
 
 /// Calls `f` for each register that an instruction reads, but not for those it reads through an
 /// index.
-fn for_reads(instruction: &Instruction, mut f: impl FnMut(u32)) {
+pub(crate) fn for_reads(instruction: &Instruction, mut f: impl FnMut(u32)) {
     let Instruction { op, a, b, c, .. } = *instruction;
     match op {
         Op::Copy => (a..a + c).for_each(f),
@@ -64,7 +64,7 @@ fn for_reads(instruction: &Instruction, mut f: impl FnMut(u32)) {
             (a..a + c).for_each(f);
         }
         Op::External => (a..a + b).for_each(f),
-        Op::LoadIndexed => f(b),
+        Op::LoadIndexed | Op::LoadTable => f(b),
         Op::ScaleIndex | Op::Fill | Op::JumpIf | Op::JumpIfNot | Op::JumpIfEqual => f(a),
         Op::Jump | Op::JumpBack => {}
         _ => [a, b, c].into_iter().take(op.arity()).for_each(f),
@@ -121,7 +121,11 @@ fn drop_moves(all: &mut [Instruction], code: &Code, reads: &[u32], is_kept: &mut
     }
 }
 
-fn compact(all: Vec<Instruction>, is_kept: &[bool], marks: &mut [(u32, u32)]) -> Vec<Instruction> {
+pub(crate) fn compact(
+    all: Vec<Instruction>,
+    is_kept: &[bool],
+    marks: &mut [(u32, u32)],
+) -> Vec<Instruction> {
     let mut moved = Vec::with_capacity(all.len() + 1);
     let mut kept = 0;
     for &keep in is_kept {

@@ -55,20 +55,35 @@ pub struct Options<'a> {
     /// and for constants that are used by name or that naga computed from others, a literal is
     /// the shortest decimal number that names its f32.
     pub source: Option<&'a str>,
+    /// Words at the end of the arguments that are alike in all samples of a run.
+    pub alike: usize,
 }
 
-/// A function of a shader, lowered to flat code over scalar registers, with all calls inlined.
-/// Immutable: threads share it, each with a machine of its own.
+/// A function of a shader, lowered to flat code over scalars, with all calls inlined. Immutable:
+/// threads share it, each with registers of its own.
 #[derive(Clone, Debug)]
 pub struct Program {
     pub(crate) precision: Precision,
     pub(crate) steps: u64,
-    pub(crate) code: Vec<Instruction>,
-    /// Registers before the first call: constants in place, all others zero.
+    /// Words before the first call: constants in place, all others zero. Registers of what is alike
+    /// in all samples are places among them, all others are rows.
     pub(crate) image: Vec<Word>,
-    pub(crate) arguments: Range<usize>,
-    pub(crate) result: Range<usize>,
-    /// Registers of each of `Options::globals` that the function reaches.
+    /// What is computed of words that are alike, once for all samples.
+    pub(crate) first: Vec<Instruction>,
+    /// Words that are alike, and the rows in which the code reads them.
+    pub(crate) spread: Vec<(u32, u32)>,
+    /// The same for rows that the code changes.
+    pub(crate) spread_again: Vec<(u32, u32)>,
+    pub(crate) code: Vec<Instruction>,
+    /// Number of rows.
+    pub(crate) rows: usize,
+    /// The row of each word of the arguments that the code reads.
+    pub(crate) arguments: Vec<Option<u32>>,
+    /// The words of the arguments that are alike.
+    pub(crate) alike: Range<usize>,
+    /// The row of each word of the result; none of one that is the argument word of that index.
+    pub(crate) result: Vec<Option<u32>>,
+    /// Words of each of `Options::globals` that the function reaches.
     pub(crate) globals: Vec<Option<Range<usize>>>,
     /// First instruction of each stretch of code, and the function it is from.
     pub(crate) marks: Vec<(u32, u32)>,
@@ -79,7 +94,7 @@ impl Program {
     /// Scalars of all arguments, flattened in the order in which members, components, columns and
     /// elements are declared.
     pub fn argument_words(&self) -> usize {
-        self.arguments.len()
+        self.arguments.len() + self.alike.len()
     }
 
     /// Scalars of the result; 0 for a function without one.
@@ -94,12 +109,7 @@ impl Program {
 
     /// Length of the code.
     pub fn instructions(&self) -> usize {
-        self.code.len()
-    }
-
-    /// Words of memory of a machine.
-    pub fn slots(&self) -> usize {
-        self.image.len()
+        self.first.len() + self.code.len()
     }
 
     pub(crate) fn function_at(&self, instruction: usize) -> &str {

@@ -24,6 +24,10 @@ impl Word {
         Word(value as u64)
     }
 
+    pub(crate) const fn from_bits(bits: u64) -> Word {
+        Word(bits)
+    }
+
     pub const fn to_f64(self) -> f64 {
         f64::from_bits(self.0)
     }

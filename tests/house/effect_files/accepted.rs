@@ -170,7 +170,9 @@ fn loops_end() {
         let apply = effect.hooks.surface.as_ref().expect("a surface effect");
         // Asks for the real time: the promise is that this is quick, with a limit far above what it takes.
         let start = std::time::Instant::now();
-        let result = apply(surface, &effect.defaults);
+        let mut result = [surface];
+        apply(&mut result, &effect.defaults);
+        let [result] = result;
         assert!(
             result.color != DVec4::NAN && !result.color.is_nan(),
             "{statement} did not end"

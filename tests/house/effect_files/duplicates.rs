@@ -45,7 +45,12 @@ fn a_duplicate_of_an_effect_is_read_and_says_the_same() {
                 assert_eq!(own_words, mine.defaults, "{}: the defaults", effect.name);
             }
             let input = surface(&mut rng);
-            let [given, expected] = [given(input, &own_words), expected(input, &words)];
+            let [given, expected] =
+                [(given, &own_words), (expected, &words)].map(|(shade, words)| {
+                    let mut all = [input];
+                    shade(&mut all, words);
+                    all[0]
+                });
             let [color, wanted] = [&given, &expected].map(|s| s.color.to_array());
             same(&effect, "color", color, wanted, &input);
             let [normal, wanted] = [&given, &expected].map(|s| s.normal.to_array());

@@ -53,7 +53,9 @@ fn an_effect_is_given_the_clock_the_picture_and_the_camera() {
         let stack = preset.stack_on(&scene, [320, 240]);
         let enabled = &stack.0[0];
         let shade = enabled.effect.hooks.surface.as_ref().expect("it is on");
-        let seen = shade(Surface::example(glam::DVec3::ONE, 0), &enabled.words);
+        let mut all = [Surface::example(glam::DVec3::ONE, 0)];
+        shade(&mut all, &enabled.words);
+        let [seen] = all;
         let [red, green, blue, alpha] = seen.color.to_array();
         assert_eq!([red, green, blue], expected, "at {time_s} s");
         assert!((alpha - 320.24).abs() < 1e-6, "{alpha}");

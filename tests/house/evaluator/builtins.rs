@@ -82,14 +82,14 @@ fn conversions() {
         if a.is_nan() {
             0
         } else {
-            a.trunc().clamp(-2147483648.0, 2147483647.0) as i32
+            a.trunc().clamp(-2147483648.0, 2147483520.0) as i32
         }
     });
     one("u32(a)", |a: f64| {
         if a.is_nan() {
             0
         } else {
-            a.trunc().clamp(0.0, 4294967295.0) as u32
+            a.trunc().clamp(0.0, 4294967040.0) as u32
         }
     });
     one("bool(a)", |a: f64| a != 0.0);

@@ -50,6 +50,26 @@ fn endless_loops_stop() {
 }
 
 #[test]
+fn a_sample_that_does_not_end_leaves_the_others_alone() {
+    let source = "fn f(n: u32) -> u32 { var sum = 0u; for (var i = 0u; i < n; i++) { sum += i; } return sum; }";
+    let options = Options {
+        limits: limits(10_000),
+        ..Options::default()
+    };
+    let program = program_with(source, "f", &options);
+    let mut registers = program.registers();
+    let counts = [3, 1_000_000, 100, 0];
+    for (lane, count) in counts.into_iter().enumerate() {
+        let row = program.argument(&registers, 0).expect("it is read");
+        row[lane].set(Word::from_u32(count));
+    }
+    let ended = program.run(&mut registers, &[], counts.len(), &mut NoHost);
+    let sums = program.result(&registers, 0).expect("it is computed");
+    let sums = [0, 2, 3].map(|lane| sums[lane].get().to_u32());
+    assert_eq!((ended, sums), (0b1101, [3, 4950, 0]));
+}
+
+#[test]
 fn large_arrays_are_refused() {
     for body in [
         "var a: array<f32, 100000000>; a[i] = 1.0; return a[i / 2u];",
@@ -210,7 +230,7 @@ fn overrides_take_their_values() {
 struct Square;
 
 impl Host for Square {
-    fn external(&mut self, index: usize, arguments: &[Word], result: &mut [Word]) {
+    fn external(&mut self, index: usize, _: usize, arguments: &[Word], result: &mut [Word]) {
         assert_eq!((index, arguments.len(), result.len()), (1, 3, 2));
         let (x, y, n) = (
             arguments[0].to_f64(),
@@ -258,7 +278,7 @@ fn the_host_computes_its_functions_and_supplies_variables() {
     assert!(machine.set_global(0, &[Word::ZERO]).is_err());
     for _ in 0..3 {
         let arguments = [Word::from_f64(1.0), Word::from_f64(-1.0), Word::from_u32(1)];
-        let result = common::to_floats(machine.call(&arguments, &mut Square).unwrap());
+        let result = common::to_floats(&machine.call(&arguments, &mut Square).unwrap());
         assert_eq!(result, [(32.0 + 3.0) * 10.0, (18.0 + 3.0) * 10.0, 1060.0]);
     }
 }

@@ -1,9 +1,9 @@
 //! Random programs on integers, with random expressions, against direct execution.
 
-use rasterlab::evaluator::{NoHost, Word};
+use rasterlab::evaluator::{LANES, NoHost, Options, Word};
 use rasterlab_fuzz::stress::scenes::for_seeds;
 
-use super::common::{OPERATORS, Random, program};
+use super::common::{OPERATORS, Random, program_with};
 
 type V = [i32; 4];
 
@@ -419,27 +419,52 @@ fn statements() {
         let source = format!(
             "{PRELUDE}\nfn f(a: vec4i, b: vec4i) -> vec4i {{\nvar s: S;\ns.v = a;\nvar w = b;\n{body}return {RESULT};\n}}\n"
         );
-        let program = program(&source, "f");
-        let mut machine = program.machine();
-        for _ in 0..4 {
-            let arguments: Vec<i32> = (0..8)
-                .map(|_| random.bits() as i32 >> random.u32(30))
+        // The last words may be alike in all samples.
+        let options = Options {
+            alike: random.u32(9) as usize,
+            ..Options::default()
+        };
+        let program = program_with(&source, "f", &options);
+        let mut registers = program.registers();
+        let own = 8 - options.alike;
+        for count in [1, LANES, 1 + random.u32(LANES as u32) as usize] {
+            let mut samples: Vec<[i32; 8]> = (0..count)
+                .map(|_| std::array::from_fn(|_| random.bits() as i32 >> random.u32(30)))
                 .collect();
-            let mut state = State {
-                g: [1, 2, 3, 4],
-                ..State::default()
-            };
-            state.s.v.copy_from_slice(&arguments[..4]);
-            state.w.copy_from_slice(&arguments[4..]);
-            let expected = if run(&mut state) {
-                state.w
-            } else {
-                result(&state)
-            };
-            let words: Vec<Word> = arguments.iter().map(|&x| Word::from_i32(x)).collect();
-            let given = machine.call(&words, &mut NoHost).expect("it ends");
-            let given: Vec<i32> = given.iter().map(|word| word.to_i32()).collect();
-            assert_eq!(given, expected, "{source} at {arguments:?}");
+            let alike: Vec<i32> = samples[0][own..].to_vec();
+            for (lane, sample) in samples.iter_mut().enumerate() {
+                sample[own..].copy_from_slice(&alike);
+                for (index, &number) in sample.iter().enumerate() {
+                    if let Some(row) = program.argument(&registers, index) {
+                        row[lane].set(Word::from_i32(number));
+                    }
+                }
+            }
+            let alike: Vec<Word> = alike.into_iter().map(Word::from_i32).collect();
+            let ended = program.run(&mut registers, &alike, count, &mut NoHost);
+            assert_eq!(ended.count_ones() as usize, count, "{source}");
+            for (lane, sample) in samples.iter().enumerate() {
+                let mut state = State {
+                    g: [1, 2, 3, 4],
+                    ..State::default()
+                };
+                state.s.v.copy_from_slice(&sample[..4]);
+                state.w.copy_from_slice(&sample[4..]);
+                let expected = if run(&mut state) {
+                    state.w
+                } else {
+                    result(&state)
+                };
+                let given = each(|at| {
+                    let row = program.result(&registers, at);
+                    row.map_or(sample[at], |row| row[lane].get().to_i32())
+                });
+                assert_eq!(
+                    given, expected,
+                    "{} at {:?}, sample {} of {}",
+                    source, sample, lane, count
+                );
+            }
         }
     });
 }

@@ -122,7 +122,10 @@ impl<'m> Lowering<'m, '_> {
             // Arguments of the outermost function are copies already, which a variable may change.
             let argument = facts.argument[handle.index()].filter(|_| self.calls.len() == 1);
             let base = match argument.and_then(|number| scope.arguments.get(number as usize)) {
-                Some(&Value::Words(Words::Range { start, .. })) => start,
+                Some(&Value::Words(Words::Range { start, .. })) => {
+                    self.code.variables.push(start..start + len);
+                    start
+                }
                 _ => self.allocate(len)?,
             };
             scope.locals.push(base);

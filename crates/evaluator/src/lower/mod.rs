@@ -24,6 +24,7 @@ use crate::instruction::Instruction;
 use crate::layout::{Layout, NoLayout};
 use crate::optimize::optimize;
 use crate::program::{Options, Program};
+use crate::rows::{Interface, assign};
 
 /// Deepest nesting of calls.
 const DEPTH_LIMIT: usize = 100;
@@ -229,16 +230,29 @@ impl<'m> Lowering<'m, '_> {
                 d
             }
         } as usize;
-        let inputs = start as usize..(start + words) as usize;
         let result = result_start..result_start + result.len() as usize;
-        let (code, marks) = optimize(&mut self.code, self.prologue, self.marks, result.clone());
+        let (mut code, mut marks) =
+            optimize(&mut self.code, self.prologue, self.marks, result.clone());
+        let interface = Interface {
+            arguments: start..start + words,
+            alike: words.min(self.options.alike as u32),
+            result: result.start as u32..result.end as u32,
+            globals: &self.supplied,
+        };
+        let (first, rows) = assign(&mut code, &mut marks, &self.code, &interface);
+        let end = interface.arguments.end as usize;
         Ok(Program {
             precision: self.options.precision,
             steps: self.options.limits.steps,
-            code,
+            alike: end - interface.alike as usize..end,
             image: self.code.image,
-            arguments: inputs,
-            result,
+            first,
+            spread: rows.spread,
+            spread_again: rows.spread_again,
+            code,
+            rows: rows.count,
+            arguments: rows.arguments,
+            result: rows.result,
             globals: self.supplied,
             marks,
             names: self.names,

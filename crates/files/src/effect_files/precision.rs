@@ -227,13 +227,16 @@ fn probed_surface(
     single: Arc<SurfaceFunction>,
     errors: Arc<Mutex<Errors>>,
 ) -> Arc<SurfaceFunction> {
-    Arc::new(move |s: Surface, words: &[u32]| {
+    Arc::new(move |surfaces: &mut [Surface], words: &[u32]| {
         if is_cancelled(&errors) {
-            return s;
+            return;
         }
-        let result = exact(s, words);
-        if s.step_offset == 0.0 {
-            let other = single(rounded(s), words);
+        let given = surfaces.to_vec();
+        exact(surfaces, words);
+        let mut others: Vec<Surface> = given.iter().copied().map(rounded).collect();
+        single(&mut others, words);
+        let all = given.iter().zip(surfaces).zip(others);
+        for ((s, result), other) in all.filter(|((s, _), _)| s.step_offset == 0.0) {
             let place = Place::Pixel(s.pixel.to_array());
             let color = color_error(in_picture(result.color), in_picture(other.color));
             // A normal is changed on purpose, or it is passed on as it came.
@@ -245,23 +248,28 @@ fn probed_surface(
             errors.record(Quantity::Color, color, place);
             errors.record(Quantity::Normal, normal, place);
         }
-        result
     })
 }
 
 fn probed_image(exact: ImageHook, single: ImageHook, errors: Arc<Mutex<Errors>>) -> ImageHook {
-    let finish = move |q: Pixel, picture: &Picture<'_>, words: &[u32]| {
+    let exact_finish = exact.finish.clone();
+    let finish = move |pixels: &mut [Pixel], picture: &Picture<'_>, words: &[u32]| {
         if is_cancelled(&errors) {
-            return q;
+            return;
         }
-        let result = (exact.finish)(q, picture, words);
-        if q.step_offset == 0.0 {
-            let color = q.color.as_vec4().as_dvec4();
-            let other = (single.finish)(Pixel { color, ..q }, picture, words);
-            let error = color_error(result.color, other.color);
-            locked(&errors).record(Quantity::Color, error, middle(q.x, q.y));
+        let rounded = |q: &Pixel| Pixel {
+            color: q.color.as_vec4().as_dvec4(),
+            ..*q
+        };
+        let mut others: Vec<Pixel> = pixels.iter().map(rounded).collect();
+        exact_finish(pixels, picture, words);
+        (single.finish)(&mut others, picture, words);
+        for (result, other) in pixels.iter().zip(others) {
+            if other.step_offset == 0.0 {
+                let error = color_error(result.color, other.color);
+                locked(&errors).record(Quantity::Color, error, middle(result.x, result.y));
+            }
         }
-        result
     };
     ImageHook {
         finish: Arc::new(finish),
@@ -270,16 +278,19 @@ fn probed_image(exact: ImageHook, single: ImageHook, errors: Arc<Mutex<Errors>>)
 }
 
 fn probed_vertex(exact: VertexHook, single: VertexHook, errors: Arc<Mutex<Errors>>) -> VertexHook {
-    let moved = move |v: Vertex, words: &[u32]| {
+    let exact_moved = exact.moved.clone();
+    let moved = move |vertices: &mut [Vertex], words: &[u32]| {
         if is_cancelled(&errors) {
-            return v;
+            return;
         }
-        let result = (exact.moved)(v, words);
-        let other = (single.moved)(v, words);
-        let error = (result.offset - other.offset).abs().max_element();
-        let place = Place::World(result.position + result.offset);
-        locked(&errors).record(Quantity::Vertex, error, place);
-        result
+        let mut others = vertices.to_vec();
+        exact_moved(vertices, words);
+        (single.moved)(&mut others, words);
+        for (result, other) in vertices.iter().zip(others) {
+            let error = (result.offset - other.offset).abs().max_element();
+            let place = Place::World(result.position + result.offset);
+            locked(&errors).record(Quantity::Vertex, error, place);
+        }
     };
     VertexHook {
         moved: Arc::new(moved),
@@ -288,12 +299,19 @@ fn probed_vertex(exact: VertexHook, single: VertexHook, errors: Arc<Mutex<Errors
 }
 
 fn probed_sample(exact: SampleHook, single: SampleHook, errors: Arc<Mutex<Errors>>) -> SampleHook {
-    let is_drawn = move |s: &Sample, words: &[u32]| {
-        let result = (exact.is_drawn)(s, words);
-        if !is_cancelled(&errors) && result != (single.is_drawn)(s, words) {
-            locked(&errors).record(Quantity::Sample, 1.0, middle(s.x, s.y));
+    let exact_is_drawn = exact.is_drawn.clone();
+    let is_drawn = move |samples: &[Sample], words: &[u32], drawn: &mut [bool]| {
+        let mut others = drawn.to_vec();
+        exact_is_drawn(samples, words, drawn);
+        if is_cancelled(&errors) {
+            return;
         }
-        result
+        (single.is_drawn)(samples, words, &mut others);
+        for ((s, drawn), other) in samples.iter().zip(drawn).zip(others) {
+            if *drawn != other {
+                locked(&errors).record(Quantity::Sample, 1.0, middle(s.x, s.y));
+            }
+        }
     };
     SampleHook {
         is_drawn: Arc::new(is_drawn),

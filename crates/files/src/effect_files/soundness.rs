@@ -15,7 +15,7 @@ use super::{
 use crate::{
     effects::{
         Effect, Stack,
-        hooks::{ImageHook, Picture, Pixel, Surface},
+        hooks::{FinishFunction, ImageHook, Picture, Pixel, Surface, SurfaceFunction},
     },
     evaluator::Precision,
     params::Field,
@@ -146,59 +146,70 @@ impl SoundnessProbe {
             if let Some(exact) = hooks.surface.clone() {
                 let (recorder, probed, single) =
                     (recorder.clone(), Arc::downgrade(effect), single_surface);
-                hooks.surface = Some(Arc::new(move |s: Surface, words: &[u32]| {
-                    let result = exact(s, words);
-                    if s.step_offset == 0.0
-                        && recorder.is_on.load(Ordering::Relaxed)
-                        && of_surface(&s).is_none()
-                    {
-                        let pixel = s.pixel.to_array().map(|v| v as u32);
-                        let in_f64 = |words: &[u32]| of_surface(&exact(s, words));
-                        let in_f32 = |words: &[u32]| {
-                            single
-                                .as_ref()
-                                .and_then(|single| of_surface(&single(rounded(s), words)))
-                        };
-                        recorder.record(
-                            &probed,
-                            pixel,
-                            of_surface(&result),
-                            (&in_f64, &in_f32),
-                            words,
-                        );
+                hooks.surface = Some(Arc::new(move |surfaces: &mut [Surface], words: &[u32]| {
+                    let given = surfaces.to_vec();
+                    exact(surfaces, words);
+                    if !recorder.is_on.load(Ordering::Relaxed) {
+                        return;
                     }
-                    result
+                    let mut in_single: Vec<Surface> = given.iter().copied().map(rounded).collect();
+                    if let Some(single) = &single {
+                        single(&mut in_single, words);
+                    }
+                    let one = |function: &SurfaceFunction, mut s: Surface, words: &[u32]| {
+                        function(std::slice::from_mut(&mut s), words);
+                        of_surface(&s)
+                    };
+                    for ((s, result), other) in given.into_iter().zip(surfaces).zip(in_single) {
+                        if s.step_offset != 0.0 || of_surface(&s).is_some() {
+                            continue;
+                        }
+                        let only_f32 = || single.as_ref().and_then(|_| of_surface(&other));
+                        let retried = |is_f32: bool, words: &[u32]| match &single {
+                            Some(single) if is_f32 => one(&**single, rounded(s), words),
+                            _ => one(&*exact, s, words),
+                        };
+                        let pixel = s.pixel.to_array().map(|v| v as u32);
+                        let made = [of_surface(result), only_f32()];
+                        recorder.record(&probed, pixel, made, &retried, words);
+                    }
                 }));
             }
             if let Some(exact) = hooks.image.clone() {
                 let (recorder, probed, single) =
                     (recorder.clone(), Arc::downgrade(effect), single_image);
-                let finish = move |q: Pixel, picture: &Picture<'_>, words: &[u32]| {
-                    let result = (exact.finish)(q, picture, words);
-                    if q.step_offset == 0.0
-                        && recorder.is_on.load(Ordering::Relaxed)
-                        && Unsound::of(q.color, &[]).is_none()
-                    {
-                        let rounded = Pixel {
-                            color: q.color.as_vec4().as_dvec4(),
-                            ..q
-                        };
-                        let in_f64 = |words: &[u32]| {
-                            Unsound::of((exact.finish)(q, picture, words).color, &[])
-                        };
-                        let in_f32 = |words: &[u32]| {
-                            let single = single.as_ref()?;
-                            Unsound::of((single.finish)(rounded, picture, words).color, &[])
-                        };
-                        recorder.record(
-                            &probed,
-                            [q.x, q.y],
-                            Unsound::of(result.color, &[]),
-                            (&in_f64, &in_f32),
-                            words,
-                        );
+                let exact_finish = exact.finish.clone();
+                let finish = move |pixels: &mut [Pixel], picture: &Picture<'_>, words: &[u32]| {
+                    let given = pixels.to_vec();
+                    (exact_finish)(pixels, picture, words);
+                    if !recorder.is_on.load(Ordering::Relaxed) {
+                        return;
                     }
-                    result
+                    let rounded = |q: Pixel| Pixel {
+                        color: q.color.as_vec4().as_dvec4(),
+                        ..q
+                    };
+                    let mut in_single: Vec<Pixel> = given.iter().copied().map(rounded).collect();
+                    if let Some(single) = &single {
+                        (single.finish)(&mut in_single, picture, words);
+                    }
+                    let one = |function: &FinishFunction, mut q: Pixel, words: &[u32]| {
+                        function(std::slice::from_mut(&mut q), picture, words);
+                        Unsound::of(q.color, &[])
+                    };
+                    for ((q, result), other) in given.into_iter().zip(pixels).zip(in_single) {
+                        if q.step_offset != 0.0 || Unsound::of(q.color, &[]).is_some() {
+                            continue;
+                        }
+                        let only_f32 =
+                            || single.as_ref().and_then(|_| Unsound::of(other.color, &[]));
+                        let retried = |is_f32: bool, words: &[u32]| match &single {
+                            Some(single) if is_f32 => one(&*single.finish, rounded(q), words),
+                            _ => one(&*exact_finish, q, words),
+                        };
+                        let made = [Unsound::of(result.color, &[]), only_f32()];
+                        recorder.record(&probed, [q.x, q.y], made, &retried, words);
+                    }
                 };
                 hooks.image = Some(ImageHook {
                     finish: Arc::new(finish),
@@ -216,33 +227,29 @@ impl SoundnessProbe {
     }
 }
 
-/// What an effect makes of the same input with other parameter words.
-type Retried<'a> = &'a dyn Fn(&[u32]) -> Outcome;
+/// What an effect makes of the same input with other parameter words, in f32 or in f64.
+type Retried<'a> = &'a dyn Fn(bool, &[u32]) -> Outcome;
 
 impl Recorder {
-    /// Records what `probed` made at a pixel with `words`: `exact` in f64, and the rest by
-    /// evaluating again.
+    /// Records what `probed` made at a pixel with `words`, in f64 and in f32.
     fn record(
         &self,
         probed: &Weak<Effect>,
         pixel: [u32; 2],
-        exact: Outcome,
-        (in_f64, in_f32): (Retried, Retried),
+        [exact, single]: [Outcome; 2],
+        retried: Retried,
         words: &[u32],
     ) {
-        let Some((made, only_f32)) = exact
-            .map(|made| (made, false))
-            .or_else(|| in_f32(words).map(|made| (made, true)))
-        else {
+        let only_f32 = exact.is_none();
+        let Some(made) = exact.or(single) else {
             return;
         };
         let Some(effect) = probed.upgrade() else {
             return;
         };
         let is_explained = self.explained.fetch_add(1, Ordering::Relaxed) < MAX_EXPLAINED;
-        let retried = if only_f32 { in_f32 } else { in_f64 };
         let parameter = if is_explained {
-            parameter_of(&effect, words, retried)
+            parameter_of(&effect, words, |words| retried(only_f32, words))
         } else {
             None
         };
@@ -257,7 +264,11 @@ impl Recorder {
 }
 
 /// The first parameter whose default, with all others as they are, gives a color.
-fn parameter_of(effect: &Effect, words: &[u32], retried: Retried) -> Option<Arc<Field>> {
+fn parameter_of(
+    effect: &Effect,
+    words: &[u32],
+    retried: impl Fn(&[u32]) -> Outcome,
+) -> Option<Arc<Field>> {
     let defaults = &effect.defaults;
     let found = effect
         .fields

@@ -67,14 +67,20 @@ impl Effect {
 
     /// The same effect, also on the surface hook.
     pub fn on_surface<P: SurfaceEffect>(mut self) -> Self {
-        self.hooks.surface = Some(Arc::new(|surface, words| P::apply(surface, &read(words))));
+        self.hooks.surface = Some(Arc::new(|surfaces, words| {
+            let params = read(words);
+            surfaces.iter_mut().for_each(|s| *s = P::apply(*s, &params));
+        }));
         self
     }
 
     /// The same effect, on which the light that comes with a scene shines.
     pub fn in_light<P: LitEffect>(mut self) -> Self {
-        self.hooks.lit = Some(Arc::new(|surface, light, words| {
-            P::in_light(surface, light, &read(words))
+        self.hooks.lit = Some(Arc::new(|surfaces, light, words| {
+            let params = read(words);
+            surfaces
+                .iter_mut()
+                .for_each(|s| *s = P::in_light(*s, light, &params));
         }));
         self
     }
@@ -89,7 +95,10 @@ impl Effect {
     pub fn on_vertex<P: VertexEffect>(mut self) -> Self {
         self.hooks.vertex = Some(VertexHook {
             needs_triangle: P::NEEDS_TRIANGLE,
-            moved: Arc::new(|vertex, words| P::moved(vertex, &read(words))),
+            moved: Arc::new(|vertices, words| {
+                let params = read(words);
+                vertices.iter_mut().for_each(|v| *v = P::moved(*v, &params));
+            }),
             error_bound: Arc::new(|vertex, error_bound, words| {
                 P::error_bound(vertex, error_bound, &read(words))
             }),
@@ -109,7 +118,12 @@ impl Effect {
             sample_setup: Arc::new(|setup, words, first| {
                 P::sample_setup(setup, &read(words), first)
             }),
-            is_drawn: Arc::new(|sample, words| P::is_drawn(sample, &read(words))),
+            is_drawn: Arc::new(|samples, words, drawn| {
+                let params = read(words);
+                for (sample, drawn) in samples.iter().zip(drawn) {
+                    *drawn &= P::is_drawn(sample, &params);
+                }
+            }),
         });
         self
     }
@@ -117,8 +131,13 @@ impl Effect {
     /// The same effect, also in passes over the finished picture.
     pub fn on_passes<P: PassEffect>(mut self) -> Self {
         if let Some(hook) = &mut self.hooks.passes {
-            hook.run =
-                Arc::new(|index, at: &ImageAt<'_>, words: &[u32]| P::pass(index, at, &read(words)));
+            hook.run = Arc::new(|index, pixels: &[ImageAt<'_>], words: &[u32]| {
+                let params = read(words);
+                pixels
+                    .iter()
+                    .map(|at| P::pass(index, at, &params))
+                    .collect()
+            });
         }
         self
     }

@@ -224,39 +224,48 @@ impl Stack {
 
     /// Applies every surface effect in order, as far as they act on a draw with these `scopes`
     /// ([`Draw::scopes`]), in the `light` that comes with the scene.
-    pub fn shade(&self, surface: Surface, scopes: u32, light: &Lighting<'_>) -> Surface {
-        self.each_on(scopes, |hooks| Some((hooks.surface.as_ref()?, &hooks.lit)))
-            .fold(surface, |surface, ((apply, lit), words)| match lit {
-                Some(lit) if !light.is_none() => lit(surface, light, words),
-                _ => apply(surface, words),
-            })
+    pub fn shade(&self, mut surface: Surface, scopes: u32, light: &Lighting<'_>) -> Surface {
+        self.shade_all(std::slice::from_mut(&mut surface), scopes, light);
+        surface
+    }
+
+    /// The same for surfaces of draws with the same `scopes`, in place.
+    pub fn shade_all(&self, surfaces: &mut [Surface], scopes: u32, light: &Lighting<'_>) {
+        let each = self.each_on(scopes, |hooks| Some((hooks.surface.as_ref()?, &hooks.lit)));
+        for ((apply, lit), words) in each {
+            match lit {
+                Some(lit) if !light.is_none() => lit(surfaces, light, words),
+                _ => apply(surfaces, words),
+            }
+        }
     }
 
     /// Moves a vertex of a draw with these `scopes` by every vertex effect in order.
-    pub fn moved(&self, vertex: hooks::Vertex, scopes: u32) -> hooks::Vertex {
-        self.each_on(scopes, |hooks| hooks.vertex.as_ref())
-            .fold(vertex, |vertex, (hook, words)| (hook.moved)(vertex, words))
+    pub fn moved(&self, mut vertex: hooks::Vertex, scopes: u32) -> hooks::Vertex {
+        self.move_all(std::slice::from_mut(&mut vertex), scopes);
+        vertex
+    }
+
+    /// The same for vertices of draws with the same `scopes`, in place.
+    pub fn move_all(&self, vertices: &mut [hooks::Vertex], scopes: u32) {
+        for (hook, words) in self.each_on(scopes, |hooks| hooks.vertex.as_ref()) {
+            (hook.moved)(vertices, words);
+        }
     }
 
     /// How far the f32 side of [`Stack::moved`] may err, given the error bound of what it starts
     /// from.
     pub fn error_bound(
         &self,
-        vertex: hooks::Vertex,
-        error_bound: hooks::ErrorBound,
+        mut vertex: hooks::Vertex,
+        mut error_bound: hooks::ErrorBound,
         scopes: u32,
     ) -> hooks::ErrorBound {
-        let each = self.each_on(scopes, |hooks| hooks.vertex.as_ref());
-        each.fold(
-            (vertex, error_bound),
-            |(vertex, error_bound), (hook, words)| {
-                (
-                    (hook.moved)(vertex, words),
-                    (hook.error_bound)(&vertex, error_bound, words),
-                )
-            },
-        )
-        .1
+        for (hook, words) in self.each_on(scopes, |hooks| hooks.vertex.as_ref()) {
+            error_bound = (hook.error_bound)(&vertex, error_bound, words);
+            (hook.moved)(std::slice::from_mut(&mut vertex), words);
+        }
+        error_bound
     }
 
     /// How far a vertex of a model of this radius may move.
@@ -268,11 +277,16 @@ impl Stack {
     }
 
     /// Finishes a pixel by every image effect in order.
-    pub fn finish(&self, pixel: Pixel, picture: &Picture) -> Pixel {
-        self.each(|hooks| hooks.image.as_ref())
-            .fold(pixel, |pixel, (hook, words)| {
-                (hook.finish)(pixel, picture, words)
-            })
+    pub fn finish(&self, mut pixel: Pixel, picture: &Picture) -> Pixel {
+        self.finish_all(std::slice::from_mut(&mut pixel), picture);
+        pixel
+    }
+
+    /// The same for pixels, in place.
+    pub fn finish_all(&self, pixels: &mut [Pixel], picture: &Picture) {
+        for (hook, words) in self.each(|hooks| hooks.image.as_ref()) {
+            (hook.finish)(pixels, picture, words);
+        }
     }
 
     /// Does an effect finish pixels?

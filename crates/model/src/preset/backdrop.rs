@@ -23,11 +23,12 @@ impl Preset {
             {
                 [backdrop.top, backdrop.bottom] = [backdrop.top, backdrop.bottom].map(|color| {
                     let color = DVec4::from_array(color.map(f64::from));
-                    let seen = Surface {
+                    let mut seen = [Surface {
                         color,
                         ..Surface::example(color.truncate(), 0)
-                    };
-                    shown(seen, &enabled.words).color.as_vec4().to_array()
+                    }];
+                    shown(&mut seen, &enabled.words);
+                    seen[0].color.as_vec4().to_array()
                 });
             }
         }

@@ -19,10 +19,11 @@ use super::{
             draw_order::ranks,
             layers::LayerImage,
             resolve::{
-                Finish, PictureTables, ResolveInput, finish, finish_at_ties, shade_perturbed,
+                Finish, PictureTables, ResolveInput, at_ties, finish, finish_at_ties,
+                shade_perturbed,
             },
             shadow::Light,
-            surface::{SurfaceTriangle, shaded},
+            surface::{SurfaceTriangle, encoded, lit_surface},
         },
         shot::Shot,
     },
@@ -156,10 +157,13 @@ impl AcceptedColors {
             let (x, y) = (i % shot.view.width as usize, i / shot.view.width as usize);
             let known = span(self.pictures.iter().map(|picture| picture[i]))?;
             let Some(triangle) = SurfaceTriangle::new(shot, geometry, id) else {
-                let at_ties = color_steps(shot.stack)
-                    .iter()
-                    .flat_map(|&step| finish.pixel_at_ties(i, background[y], step));
-                let all = span(known.into_iter().chain(at_ties))?;
+                let steps = color_steps(shot.stack).iter();
+                let colors = finish.colors(steps.map(|&step| (i, background[y], step)));
+                let all = span(
+                    known
+                        .into_iter()
+                        .chain(colors.into_iter().flat_map(at_ties)),
+                )?;
                 return (all != known).then_some((i, all));
             };
             let corners = CornerErrors::of(shot, id, geometry.packed_bits);
@@ -168,16 +172,19 @@ impl AcceptedColors {
                 corners.may_turn(&triangle, x, y),
             );
             let rank = ranks.get(id as usize).copied().unwrap_or(0.0);
-            let finished = |perturbation: Perturbation| {
-                let surface = triangle.surface(x, y, &perturbation);
-                let color = shaded(
-                    shot,
-                    &triangle,
-                    Surface { rank, ..surface },
-                    light.as_ref(),
-                    perturbation.color_step,
-                );
-                finish.pixel_at_ties(i, color, perturbation.color_step)
+            let finished = |perturbations: &mut dyn Iterator<Item = Perturbation>| {
+                let lit = |perturbation: Perturbation| {
+                    let surface = triangle.surface(x, y, &perturbation);
+                    let surface = Surface { rank, ..surface };
+                    lit_surface(&triangle, surface, light.as_ref(), perturbation.color_step)
+                };
+                let mut surfaces: Vec<Surface> = perturbations.map(lit).collect();
+                let steps: Vec<f64> = surfaces.iter().map(|s| s.step_offset).collect();
+                shot.stack
+                    .shade_all(&mut surfaces, triangle.scopes, &shot.light());
+                let colors = surfaces.iter().map(|surface| encoded(surface.color));
+                let finished = finish.colors(colors.zip(steps).map(|(c, step)| (i, c, step)));
+                finished.into_iter().flat_map(at_ties)
             };
             let on_either_side = |perturbation: Perturbation| {
                 [false, true]
@@ -189,12 +196,11 @@ impl AcceptedColors {
                     })
             };
             let offsets = triangle.texture_offsets(x, y);
-            let around = interpolations(shot.stack, errors, Search::Wide)
+            let mut around = interpolations(shot.stack, errors, Search::Wide)
                 .chain(places(shot.stack).filter(|_| may_turn))
                 .flat_map(on_either_side)
                 .chain(textures(shot.scene, shot.stack, &offsets));
-            let [least, most] =
-                span(around.flat_map(&finished)).unwrap_or([self.pictures[0][i]; 2]);
+            let [least, most] = span(finished(&mut around)).unwrap_or([self.pictures[0][i]; 2]);
             let slack = |c: usize| {
                 if errors.doubt() == Doubt::Wide {
                     (f64::from(most[c] - least[c]) * WIDE_SLACK).ceil() as u8
@@ -210,7 +216,7 @@ impl AcceptedColors {
                 known
                     .into_iter()
                     .chain(wide)
-                    .chain(places(shot.stack).flat_map(&finished)),
+                    .chain(finished(&mut places(shot.stack))),
             )?;
             (all != known).then_some((i, all))
         };

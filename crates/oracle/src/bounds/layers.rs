@@ -174,7 +174,7 @@ impl SampleShade<'_> {
             color_step,
             ..Perturbation::default()
         });
-        let all: Vec<Surface> = self
+        let mut all: Vec<Surface> = self
             .perturbations
             .iter()
             .copied()
@@ -186,15 +186,15 @@ impl SampleShade<'_> {
                 let lit = self
                     .light
                     .map_or(0.0, |light| light.arrives(&lit_point, known.id(), step));
-                let surface = Surface {
+                Surface {
                     rank: self.rank,
                     lit,
                     step_offset: step,
                     ..known.surface(x, y, &perturbation)
-                };
-                stack.shade(surface, known.scopes, &self.shot.light())
+                }
             })
             .collect();
+        stack.shade_all(&mut all, known.scopes, &self.shot.light());
         all.into_iter()
     }
 }

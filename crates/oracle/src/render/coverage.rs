@@ -167,11 +167,29 @@ pub fn scatter<'a, T: Send, V: FnMut(&mut T, usize, usize, Hit)>(
                 let (columns, rows) = triangle.bounds(view, tests);
                 let mut visit = visitor(triangle);
                 for y in rows.start.max(first_row)..rows.end.min(first_row + ROWS) {
-                    for x in columns.clone() {
-                        let Some(hit) = triangle.at(x, y, tests) else {
-                            continue;
-                        };
-                        visit(&mut cells[(y - first_row) * width + x], x, y, hit);
+                    let cells = &mut cells[(y - first_row) * width..][..width];
+                    if tests.are_simple() {
+                        for x in columns.clone() {
+                            if let Some(hit) = triangle.at(x, y, tests) {
+                                visit(&mut cells[x], x, y, hit);
+                            }
+                        }
+                        continue;
+                    }
+                    let (row, hits): (Vec<_>, Vec<_>) = columns
+                        .clone()
+                        .filter_map(|x| {
+                            let edges = triangle.edges(x, y, tests.unit);
+                            let hit = triangle.covers(x, y, &edges, tests)?;
+                            Some(((x as u32, edges.map(|edge| edge.value)), hit))
+                        })
+                        .unzip();
+                    let left_out = tests.left_out_in_row(triangle, y as u32, &row);
+                    for (((x, _), hit), left_out) in row.iter().zip(hits).zip(left_out) {
+                        let x = *x as usize;
+                        if left_out.is_none() {
+                            visit(&mut cells[x], x, y, hit);
+                        }
                     }
                 }
             }

@@ -14,7 +14,7 @@ use super::{
     layers::LayerInput,
     sample_rules::SampleTests,
     shadow::Light,
-    surface::{SurfaceTriangle, encoded},
+    surface::{SurfaceTriangle, encoded, shade_runs},
     triangles::OrientedTriangle,
 };
 use crate::{
@@ -127,7 +127,7 @@ pub fn glass_colors(input: &LayerInput, layers: &GlassLayers) -> Result<Vec<DVec
     let row = |y: usize| {
         checkpoint.pass()?;
         let mut known: HashMap<u32, Option<SurfaceTriangle>> = HashMap::new();
-        let mut shaded = |id: u32, x: usize| {
+        let mut surface = |id: u32, x: usize| {
             let triangle = known
                 .entry(id)
                 .or_insert_with(|| SurfaceTriangle::new(shot, input.geometry, id))
@@ -142,21 +142,37 @@ pub fn glass_colors(input: &LayerInput, layers: &GlassLayers) -> Result<Vec<DVec
                 lit,
                 ..surface
             };
-            let shaded = shot.stack.shade(surface, triangle.scopes, &shot.light());
-            Some((shaded, triangle.scopes))
+            Some((triangle.scopes, surface))
         };
+        // What lies behind each pixel, and then its layers.
+        let mut asked = Vec::new();
+        for x in 0..width {
+            let pixel = y * width + x;
+            let ids = layers.at(pixel).iter().map(|hit| hit.triangle_id);
+            asked.extend(
+                [layers.behind[pixel]]
+                    .into_iter()
+                    .chain(ids)
+                    .map(|id| surface(id, x)),
+            );
+        }
+        let (scopes, mut surfaces): (Vec<u32>, Vec<Surface>) =
+            asked.iter().flatten().copied().unzip();
+        shade_runs(shot, &scopes, &mut surfaces);
+        let mut surfaces = surfaces.into_iter();
+        let mut shaded = asked.into_iter().map(|asked| {
+            let (scopes, _) = asked?;
+            Some((surfaces.next()?, scopes))
+        });
+        let mut next = || shaded.next().flatten();
         let pixel = |x: usize| {
             let pixel = y * width + x;
-            let behind =
-                shaded(layers.behind[pixel], x).map_or(background[y], |(surface, _)| surface.color);
-            let seen = layers
-                .at(pixel)
-                .iter()
-                .fold(GlassLayer::CLEAR, |seen, hit| {
-                    shaded(hit.triangle_id, x).map_or(seen, |(surface, scopes)| {
-                        seen.merged(&shader.layer(&surface, scopes))
-                    })
-                });
+            let behind = next().map_or(background[y], |(surface, _)| surface.color);
+            let seen = layers.at(pixel).iter().fold(GlassLayer::CLEAR, |seen, _| {
+                next().map_or(seen, |(surface, scopes)| {
+                    seen.merged(&shader.layer(&surface, scopes))
+                })
+            });
             let color = seen.over(behind.truncate());
             encoded(color.extend(seen.alpha_over(behind.w)))
         };

@@ -6,6 +6,7 @@ use rayon::prelude::*;
 use super::{
     super::shot::Shot,
     resolve::{PictureTables, ResolveInput, bytes},
+    surface::TOGETHER,
 };
 use crate::{
     effects::hooks::{Image, ImageAt, Lens, PassInput, Picture, Signs},
@@ -94,18 +95,25 @@ pub fn passed_colors(
             };
             let size = pass.size(size);
             let pixels = size[0] as usize * size[1] as usize;
-            let write = |i: usize| {
-                let at = ImageAt {
-                    x: (i % size[0] as usize) as i64,
-                    y: (i / size[0] as usize) as i64,
-                    size,
-                    scale: pass.scale,
-                    step_offset: perturbation.step_offset,
-                    input: &input,
-                };
-                perturbed((hook.run)(index, &at, words), i, size, perturbation)
+            let at = |i: usize| ImageAt {
+                x: (i % size[0] as usize) as i64,
+                y: (i / size[0] as usize) as i64,
+                size,
+                scale: pass.scale,
+                step_offset: perturbation.step_offset,
+                input: &input,
             };
-            let colors = map_each((0..pixels).into_par_iter(), write)?;
+            let write = |part: usize| {
+                let first = part * TOGETHER;
+                let part: Vec<ImageAt<'_>> =
+                    (first..pixels.min(first + TOGETHER)).map(at).collect();
+                let written = (hook.run)(index, &part, words);
+                let each = (first..).zip(written);
+                each.map(|(i, color)| perturbed(color, i, size, perturbation))
+                    .collect::<Vec<_>>()
+            };
+            let parts = map_each((0..pixels.div_ceil(TOGETHER)).into_par_iter(), write)?;
+            let colors = parts.concat();
             if pass.kept.is_some() {
                 written = Some(colors.clone());
             }

@@ -3,7 +3,12 @@
 use rayon::prelude::*;
 
 use super::{
-    super::shot::Shot, clip, deform, records::fill_records, snap::snap, vertex::VertexEvaluator,
+    super::shot::Shot,
+    clip, deform,
+    records::fill_records,
+    snap::{ClipPosition, snap},
+    surface::TOGETHER,
+    vertex::{Corner, VertexEvaluator},
 };
 use crate::{
     frame::{Geometry, SnappedVertex},
@@ -21,9 +26,7 @@ pub fn project(shot: &Shot) -> Result<Geometry, Canceled> {
         view,
         stack,
     } = *shot;
-    let record = |evaluator: &VertexEvaluator, record: usize| match evaluator
-        .clip(evaluator.corner(record))
-    {
+    let record = |clip: Result<ClipPosition, u32>| match clip {
         Ok(position) => snap(&position, view),
         Err(flags) => SnappedVertex {
             flags,
@@ -31,8 +34,14 @@ pub fn project(shot: &Shot) -> Result<Geometry, Canceled> {
         },
     };
     let vertices = fill_records(shot, |evaluator, first, records| {
-        for (index, to) in records.iter_mut().enumerate() {
-            *to = record(evaluator, first + index);
+        for (part, records) in records.chunks_mut(TOGETHER).enumerate() {
+            let first = first + part * TOGETHER;
+            let corners: Vec<Corner> = (first..first + records.len())
+                .map(|record| evaluator.corner(record))
+                .collect();
+            for (to, clip) in records.iter_mut().zip(evaluator.clip_all(&corners)) {
+                *to = record(clip);
+            }
         }
     })?;
     let mut geometry = Geometry {

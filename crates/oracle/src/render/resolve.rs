@@ -8,7 +8,7 @@ use rayon::prelude::*;
 
 use super::{
     super::{perturbation::Perturbation, shot::Shot},
-    surface::surface_colors,
+    surface::{TOGETHER, surface_colors},
 };
 use crate::{
     effects::{
@@ -56,9 +56,8 @@ pub fn shade_rows(
     let steady = Perturbation::default();
     let colors = surface_colors(shot, input.triangle_ids, geometry, &steady, rows.clone())?;
     let first = (rows.start * shot.view.width) as usize;
-    finished_each(shot, input, &colors, |finish, i, color| {
-        finish.pixel(first + i, color, 0.0)
-    })
+    let rounded = |colors: Vec<DVec4>| colors.into_iter().map(bytes).collect();
+    finished_each(shot, input, (first, &colors), 0.0, rounded)
 }
 
 /// Bytes of all pixels under a perturbation.
@@ -81,9 +80,8 @@ pub fn finish(
     colors: &[DVec4],
     color_step: f64,
 ) -> Result<Vec<[u8; 4]>, Canceled> {
-    finished_each(shot, input, colors, |finish, i, color| {
-        finish.pixel(i, color, color_step)
-    })
+    let rounded = |colors: Vec<DVec4>| colors.into_iter().map(bytes).collect();
+    finished_each(shot, input, (0, colors), color_step, rounded)
 }
 
 /// The same with both bytes of each channel whose color lies in the middle between two: all lower
@@ -94,28 +92,33 @@ pub fn finish_at_ties(
     colors: &[DVec4],
     color_step: f64,
 ) -> Result<[Vec<[u8; 4]>; 2], Canceled> {
-    let both = finished_each(shot, input, colors, |finish, i, color| {
-        finish.pixel_at_ties(i, color, color_step)
-    })?;
-    Ok(both
+    let both = |colors: Vec<DVec4>| colors.into_iter().map(at_ties).collect();
+    Ok(finished_each(shot, input, (0, colors), color_step, both)?
         .into_iter()
         .map(|[lower, upper]| (lower, upper))
         .unzip::<_, _, Vec<_>, Vec<_>>()
         .into())
 }
 
-/// What `pixel` makes of every pixel's gamma-encoded color.
+/// What `rounded` makes of the finished colors, given those of the surfaces and the index of the
+/// first pixel.
 fn finished_each<T: Send>(
     shot: &Shot,
     input: &ResolveInput,
-    colors: &[DVec4],
-    pixel: impl Fn(&Finish, usize, DVec4) -> T + Sync,
+    (first, colors): (usize, &[DVec4]),
+    color_step: f64,
+    rounded: impl Fn(Vec<DVec4>) -> Vec<T> + Sync,
 ) -> Result<Vec<T>, Canceled> {
     let tables = PictureTables::of(shot);
     let finish = Finish::new(shot, input, &tables);
-    map_each(colors.par_iter().enumerate(), |(i, &color)| {
-        pixel(&finish, i, color)
-    })
+    let parts = map_each(
+        colors.par_chunks(TOGETHER).enumerate(),
+        |(part, colors): (usize, &[DVec4])| {
+            let pixels = (first + part * TOGETHER..).zip(colors);
+            rounded(finish.colors(pixels.map(|(i, &color)| (i, color, color_step))))
+        },
+    )?;
+    Ok(parts.into_iter().flatten().collect())
 }
 
 /// What image effects read beside the images.
@@ -157,35 +160,30 @@ impl<'a> Finish<'a> {
         }
     }
 
-    /// Bytes of the pixel with this index, from its gamma-encoded surface color.
-    pub fn pixel(&self, i: usize, color: DVec4, color_step: f64) -> [u8; 4] {
-        bytes(self.color(i, color, color_step))
-    }
-
-    /// The same, with both bytes of each channel whose color lies in the middle between two.
-    pub fn pixel_at_ties(&self, i: usize, color: DVec4, color_step: f64) -> [[u8; 4]; 2] {
-        let color = self.color(i, color, color_step);
-        [-TIE, TIE].map(|offset| bytes(color + offset))
-    }
-
-    /// The color before it is rounded.
-    fn color(&self, i: usize, color: DVec4, color_step: f64) -> DVec4 {
-        let (x, y) = (i as u32 % self.picture.width, i as u32 / self.picture.width);
-        let color = self.dots.as_ref().map_or(color, |dots| {
-            dotted(dots, color, self.picture.background(y), self.strengths[i])
-        });
-        let pixel = Pixel {
-            color,
-            x,
-            y,
-            step_offset: color_step,
+    /// The colors of pixels before they are rounded, given the index, the gamma-encoded surface
+    /// color and the offset of steps of each.
+    pub fn colors(&self, pixels: impl Iterator<Item = (usize, DVec4, f64)>) -> Vec<DVec4> {
+        let dotted = |(i, color, step_offset): (usize, DVec4, f64)| {
+            let (x, y) = (i as u32 % self.picture.width, i as u32 / self.picture.width);
+            let color = self.dots.as_ref().map_or(color, |dots| {
+                dotted(dots, color, self.picture.background(y), self.strengths[i])
+            });
+            Pixel {
+                color,
+                x,
+                y,
+                step_offset,
+            }
         };
-        if self.stack.finishes() {
-            self.stack.finish(pixel, &self.picture).color
-        } else {
-            color
-        }
+        let mut pixels: Vec<Pixel> = pixels.map(dotted).collect();
+        self.stack.finish_all(&mut pixels, &self.picture);
+        pixels.into_iter().map(|pixel| pixel.color).collect()
     }
+}
+
+/// Both bytes of each channel whose color lies in the middle between two.
+pub fn at_ties(color: DVec4) -> [[u8; 4]; 2] {
+    [-TIE, TIE].map(|offset| bytes(color + offset))
 }
 
 /// A pixel with a dot over its surface, or over the background if the effect hides the model.

@@ -186,19 +186,51 @@ impl<'a> SampleTests<'a> {
         y: u32,
         weights: [i64; 3],
     ) -> Option<LeftOut<'a>> {
-        if !self.is_within_limit(triangle.id, x, y) {
-            return Some(LeftOut::DrawOrder);
+        if self.are_simple() {
+            return (!self.is_within_limit(triangle.id, x, y)).then_some(LeftOut::DrawOrder);
         }
+        self.left_out_in_row(triangle, y, &[(x, weights)])[0]
+    }
+
+    /// Does nothing but a draw order leave samples out?
+    pub fn are_simple(&self) -> bool {
+        self.effects.is_empty() && self.masked.is_none() && self.discs.is_empty()
+    }
+
+    /// The same of several samples in a row, each with its column and weights.
+    pub fn left_out_in_row(
+        &self,
+        triangle: &OrientedTriangle,
+        y: u32,
+        row: &[(u32, [i64; 3])],
+    ) -> Vec<Option<LeftOut<'a>>> {
         let is_disc = self.discs.contains(&triangle.id);
-        if self.effects.is_empty() && self.masked.is_none() && !is_disc {
-            return None;
-        }
-        let area: i64 = weights.iter().sum();
-        let shift = (64 - area.unsigned_abs().leading_zeros()).saturating_sub(31);
-        let parts = triangle.in_file_order(weights.map(|weight| (weight.max(0) >> shift) as u32));
-        // A disc that would have to be clipped is not drawn.
-        if is_disc && (triangle.is_clipped() || !is_in_disc(parts)) {
-            return Some(LeftOut::Disc);
+        let sample = |&(x, weights): &(u32, [i64; 3])| {
+            let area: i64 = weights.iter().sum();
+            let shift = (64 - area.unsigned_abs().leading_zeros()).saturating_sub(31);
+            let part = |weight: i64| (weight.max(0) >> shift) as u32;
+            Sample {
+                x,
+                y,
+                triangle: triangle.id,
+                areas: triangle.in_file_order(weights.map(part)),
+                setup: [0; 4],
+            }
+        };
+        let mut samples: Vec<Sample> = row.iter().map(sample).collect();
+        let mut left_out: Vec<Option<LeftOut<'a>>> = samples
+            .iter()
+            .map(|sample| {
+                if !self.is_within_limit(triangle.id, sample.x, y) {
+                    return Some(LeftOut::DrawOrder);
+                }
+                // A disc that would have to be clipped is not drawn.
+                let is_left = is_disc && (triangle.is_clipped() || !is_in_disc(sample.areas));
+                is_left.then_some(LeftOut::Disc)
+            })
+            .collect();
+        if self.effects.is_empty() && self.masked.is_none() {
+            return left_out;
         }
         let records = self.effect_setups
             + if self.masked.is_some() {
@@ -210,36 +242,31 @@ impl<'a> SampleTests<'a> {
         let scopes = self.scoped.map_or(0, |(scene, draws)| {
             draw_of(scene, draws, triangle.id).map_or(0, |draw| draw.scopes)
         });
-        let passes = |effect: &EffectTest| {
+        for effect in &self.effects {
             if effect.scope.is_some_and(|bit| scopes >> bit & 1 == 0) {
-                return true;
+                continue;
             }
             let setup = effect.setup.map_or([0; 4], |index| setups[index]);
-            (effect.hook.is_drawn)(
-                &Sample {
-                    x,
-                    y,
-                    triangle: triangle.id,
-                    areas: parts,
-                    setup,
-                },
-                effect.words,
-            )
-        };
-        let passes_mask = |(scene, draws): (&Scene, &[Draw])| {
-            let draw = draw_of(scene, draws, triangle.id).expect("a triangle belongs to a draw");
-            mask::is_drawn(
-                scene,
-                &scene.primitives[draw.primitive],
-                triangle,
-                parts,
-                &setups[self.effect_setups..],
-            )
-        };
-        if let Some(effect) = self.effects.iter().find(|effect| !passes(effect)) {
-            return Some(LeftOut::Effect(effect.name));
+            samples.iter_mut().for_each(|sample| sample.setup = setup);
+            let mut drawn = vec![true; samples.len()];
+            (effect.hook.is_drawn)(&samples, effect.words, &mut drawn);
+            for (left_out, is_drawn) in left_out.iter_mut().zip(drawn) {
+                *left_out = left_out.or((!is_drawn).then_some(LeftOut::Effect(effect.name)));
+            }
         }
-        (!self.masked.is_none_or(passes_mask)).then_some(LeftOut::Mask)
+        if let Some((scene, draws)) = self.masked {
+            let draw = draw_of(scene, draws, triangle.id).expect("a triangle belongs to a draw");
+            let primitive = &scene.primitives[draw.primitive];
+            let setups = &setups[self.effect_setups..];
+            for (left_out, sample) in left_out.iter_mut().zip(&samples) {
+                if left_out.is_none()
+                    && !mask::is_drawn(scene, primitive, triangle, sample.areas, setups)
+                {
+                    *left_out = Some(LeftOut::Mask);
+                }
+            }
+        }
+        left_out
     }
 }
 

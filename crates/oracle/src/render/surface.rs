@@ -52,47 +52,68 @@ pub fn surface_colors(
     let background = background(shot.view);
     let ranks = ranks(shot, geometry)?;
     let light = Light::of(shot, geometry);
-    let color = |y: usize, found: Option<(&SurfaceTriangle, Surface)>| {
-        let Some((triangle, surface)) = found else {
-            return background[y];
-        };
+    let visit = |y: usize, found: Option<(&SurfaceTriangle, Surface)>| {
+        let (triangle, surface) = found.ok_or(background[y])?;
         let id = surface.triangle_id;
         let rank = ranks.get(id as usize).copied().unwrap_or(0.0);
-        shaded(
-            shot,
-            triangle,
-            Surface { rank, ..surface },
-            light.as_ref(),
-            perturbation.color_step,
-        )
+        let surface = Surface { rank, ..surface };
+        let step = perturbation.color_step;
+        Ok((
+            triangle.scopes,
+            lit_surface(triangle, surface, light.as_ref(), step),
+        ))
     };
-    each_surface_in(rows, shot, triangle_ids, geometry, perturbation, color)
+    let shade = |row: Vec<Result<(u32, Surface), DVec4>>| {
+        let (scopes, mut surfaces): (Vec<u32>, Vec<Surface>) =
+            row.iter().flatten().copied().unzip();
+        shade_runs(shot, &scopes, &mut surfaces);
+        let mut colors = surfaces.into_iter().map(|surface| encoded(surface.color));
+        let of_pixel = |pixel: Result<_, DVec4>| match pixel {
+            Ok(_) => colors.next().unwrap_or_default(),
+            Err(background) => background,
+        };
+        row.into_iter().map(of_pixel).collect()
+    };
+    each_row(
+        rows,
+        shot,
+        triangle_ids,
+        geometry,
+        perturbation,
+        visit,
+        shade,
+    )
 }
 
-/// The gamma-encoded color of a surface of `triangle`, whose steps are moved by `color_step`.
-pub fn shaded(
-    shot: &Shot,
+/// Pixels that are shaded together, so that an effect's text is evaluated for all of them at once.
+pub const TOGETHER: usize = 64;
+
+/// Shades surfaces by the effects that act on their draws, whose scopes are given.
+pub fn shade_runs(shot: &Shot, scopes: &[u32], mut surfaces: &mut [Surface]) {
+    for run in scopes.chunk_by(|a, b| a == b) {
+        let (own, others) = surfaces.split_at_mut(run.len());
+        for together in own.chunks_mut(TOGETHER) {
+            shot.stack.shade_all(together, run[0], &shot.light());
+        }
+        surfaces = others;
+    }
+}
+
+/// A surface of `triangle` as the light reaches it, whose steps are moved by `color_step`.
+pub fn lit_surface(
     triangle: &SurfaceTriangle,
     surface: Surface,
     light: Option<&Light>,
     color_step: f64,
-) -> DVec4 {
+) -> Surface {
     let lit = light.map_or(0.0, |light| {
         light.arrives(&triangle.lit_point(&surface), triangle.id, color_step)
     });
-    encoded(
-        shot.stack
-            .shade(
-                Surface {
-                    lit,
-                    step_offset: color_step,
-                    ..surface
-                },
-                triangle.scopes,
-                &shot.light(),
-            )
-            .color,
-    )
+    Surface {
+        lit,
+        step_offset: color_step,
+        ..surface
+    }
 }
 
 /// Visits the row and the surface of every pixel before any surface effect, given the triangle of
@@ -104,18 +125,19 @@ pub fn each_surface<T: Send>(
     perturbation: &Perturbation,
     visit: impl Fn(usize, Option<(&SurfaceTriangle, Surface)>) -> T + Sync,
 ) -> Result<Vec<T>, Canceled> {
-    let rows = 0..shot.view.height;
-    each_surface_in(rows, shot, triangle_ids, geometry, perturbation, visit)
+    let (rows, all) = (0..shot.view.height, |row| row);
+    each_row(rows, shot, triangle_ids, geometry, perturbation, visit, all)
 }
 
-/// The same, only in `rows`.
-fn each_surface_in<T: Send>(
+/// The same, only in `rows`, and what `of_row` makes of all that `visit` gives in a row.
+fn each_row<V, T: Send>(
     rows: Range<u32>,
     shot: &Shot,
     triangle_ids: &[u32],
     geometry: &Geometry,
     perturbation: &Perturbation,
-    visit: impl Fn(usize, Option<(&SurfaceTriangle, Surface)>) -> T + Sync,
+    visit: impl Fn(usize, Option<(&SurfaceTriangle, Surface)>) -> V + Sync,
+    of_row: impl Fn(Vec<V>) -> Vec<T> + Sync,
 ) -> Result<Vec<T>, Canceled> {
     let width = shot.view.width.max(1) as usize;
     let checkpoint = checkpoint();
@@ -134,7 +156,7 @@ fn each_surface_in<T: Send>(
                     .map(|triangle| (triangle, triangle.surface(x, y, perturbation))),
             )
         };
-        Ok(ids.iter().enumerate().map(pixel).collect::<Vec<_>>())
+        Ok(of_row(ids.iter().enumerate().map(pixel).collect()))
     };
     let found = triangle_ids
         .par_chunks(width)
@@ -319,7 +341,7 @@ impl<'a> SurfaceTriangle<'a> {
         corners: [Corner; 3],
         side: f64,
     ) {
-        let moved = corners.map(|corner| evaluator.moved(corner));
+        let moved = evaluator.moved_all(&corners);
         for (position, vertex) in self.positions.iter_mut().zip(&moved) {
             *position += vertex.offset;
         }

@@ -138,10 +138,33 @@ impl<'a> VertexEvaluator<'a> {
         Ok(on_grid(position, cell_px, self.view))
     }
 
+    /// The same of several corners.
+    pub fn clip_all(&self, corners: &[Corner]) -> Vec<Result<ClipPosition, u32>> {
+        let moved = if self.moves {
+            self.moved_all(corners)
+        } else {
+            Vec::new()
+        };
+        let clip = |(index, &corner): (usize, &Corner)| {
+            let (position, cell_px) = self.clip_moved(corner, || moved[index])?;
+            Ok(on_grid(position, cell_px, self.view))
+        };
+        corners.iter().enumerate().map(clip).collect()
+    }
+
     /// The same before the place is rounded to the cells of an effect, and the side of these, pixels;
     /// 0 where there are none.
     /// Errors: the flags of a position that is refused.
     pub fn clip_off_grid(&self, corner: Corner) -> Result<(ClipPosition, u32), u32> {
+        self.clip_moved(corner, || self.moved(corner))
+    }
+
+    /// The same of a corner that effects have moved.
+    fn clip_moved(
+        &self,
+        corner: Corner,
+        moved: impl Fn() -> Vertex,
+    ) -> Result<(ClipPosition, u32), u32> {
         let position = deform::position(self.scene, self.draw, corner.vertex)?;
         let [x, y, z, w] = self.clip_rows(position - self.draw.origin(), Terms::Signed);
         if !self.moves {
@@ -149,7 +172,7 @@ impl<'a> VertexEvaluator<'a> {
         }
         let Vertex {
             offset: o, cell_px, ..
-        } = self.moved(corner);
+        } = moved();
         let row = |r: usize| {
             [0, 1, 2]
                 .map(|axis| self.clip_from_world[axis][r] * o[axis])
@@ -179,9 +202,18 @@ impl<'a> VertexEvaluator<'a> {
 
     /// A corner after all effects; its displacement is clamped to 2^40 m, as every coordinate is.
     pub fn moved(&self, corner: Corner) -> Vertex {
-        let mut vertex = self.stack.moved(self.unmoved(corner), self.draw.scopes);
-        vertex.offset = clamped(vertex.offset);
-        vertex
+        self.moved_all(&[corner])[0]
+    }
+
+    /// The same of several corners.
+    pub fn moved_all(&self, corners: &[Corner]) -> Vec<Vertex> {
+        let mut vertices: Vec<Vertex> =
+            corners.iter().map(|&corner| self.unmoved(corner)).collect();
+        self.stack.move_all(&mut vertices, self.draw.scopes);
+        vertices
+            .iter_mut()
+            .for_each(|vertex| vertex.offset = clamped(vertex.offset));
+        vertices
     }
 
     /// A corner before any effect.

@@ -58,8 +58,8 @@ impl Picture<'_> {
     }
 }
 
-/// How an image effect finishes a pixel, given its parameter words.
-pub type FinishFunction = dyn Fn(Pixel, &Picture<'_>, &[u32]) -> Pixel + Send + Sync;
+/// How an image effect finishes pixels in place, given its parameter words.
+pub type FinishFunction = dyn Fn(&mut [Pixel], &Picture<'_>, &[u32]) + Send + Sync;
 
 /// An image effect's function over its parameter words.
 #[derive(Clone)]

@@ -12,7 +12,7 @@ pub mod tone;
 mod vertex;
 
 pub use front::{Front, Pattern};
-pub use image::{ImageHook, Picture, Pixel};
+pub use image::{FinishFunction, ImageHook, Picture, Pixel};
 pub use passes::{
     EMPTY_DEPTH_M, EarlierFrames, Image, ImageAt, ImagePass, Lens, PassEffect, PassFunction,
     PassHook, PassInput, Signs,
@@ -28,11 +28,11 @@ use std::sync::Arc;
 
 use crate::scene::particle_discs::ParticleSettings;
 
-/// A surface effect's function over its parameter words.
-pub type SurfaceFunction = dyn Fn(Surface, &[u32]) -> Surface + Send + Sync;
+/// A surface effect's function over its parameter words, which changes every surface in place.
+pub type SurfaceFunction = dyn Fn(&mut [Surface], &[u32]) + Send + Sync;
 
-/// A surface effect's function where the scene brings light, over it and its parameter words.
-pub type LitFunction = dyn Fn(Surface, &Lighting<'_>, &[u32]) -> Surface + Send + Sync;
+/// The same where the scene brings light.
+pub type LitFunction = dyn Fn(&mut [Surface], &Lighting<'_>, &[u32]) + Send + Sync;
 
 /// Every hook of one effect, each with its function over the parameter words.
 #[derive(Clone, Default)]

@@ -310,8 +310,8 @@ impl ImagePass {
     }
 }
 
-/// What the pass of this index writes at a pixel, given the effect's parameter words.
-pub type PassFunction = dyn Fn(usize, &ImageAt<'_>, &[u32]) -> DVec4 + Send + Sync;
+/// What the pass of this index writes at pixels, given the effect's parameter words.
+pub type PassFunction = dyn Fn(usize, &[ImageAt<'_>], &[u32]) -> Vec<DVec4> + Send + Sync;
 
 /// The passes of an effect, and their function over its parameter words.
 #[derive(Clone)]

@@ -133,8 +133,8 @@ pub type SetupFunction = dyn Fn(&TriangleSetup, &[u32], Option<u32>) -> [u32; 4]
 pub type SetupBoundFunction = dyn Fn(&TriangleSetup, &[u32]) -> f64 + Send + Sync;
 /// What is true of a sample effect with these parameter words.
 pub type WordsTest = dyn Fn(&[u32]) -> bool + Send + Sync;
-/// Whether a sample is drawn.
-pub type SampleTest = dyn Fn(&Sample, &[u32]) -> bool + Send + Sync;
+/// Clears the flag of each sample that is not drawn.
+pub type SampleTest = dyn Fn(&[Sample], &[u32], &mut [bool]) + Send + Sync;
 
 /// A sample effect's functions over its parameter words.
 #[derive(Clone)]

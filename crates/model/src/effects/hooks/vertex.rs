@@ -61,8 +61,8 @@ impl ErrorBound {
 /// Largest relative error of one f32 addition or multiplication, in any rounding mode.
 pub const ROUNDING: f64 = 1.0 / (1 << 23) as f64;
 
-/// Where a vertex effect moves a vertex, given its parameter words.
-pub type VertexFunction = dyn Fn(Vertex, &[u32]) -> Vertex + Send + Sync;
+/// Where a vertex effect moves vertices, given its parameter words; in place.
+pub type VertexFunction = dyn Fn(&mut [Vertex], &[u32]) + Send + Sync;
 /// The error bound of what it moves, given that of its input.
 pub type VertexBoundFunction = dyn Fn(&Vertex, ErrorBound, &[u32]) -> ErrorBound + Send + Sync;
 /// The farthest that it moves a vertex of a model of this radius, meters.

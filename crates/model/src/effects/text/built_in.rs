@@ -89,16 +89,18 @@ fn hooks(effect: &Effect, declaration: &Declaration<'_>) -> Hooks {
             error_bound: Arc::new(|_, _| 0.0),
             is_from_floats: Arc::new(|_| false),
             sample_setup: Arc::new(|_, _, _| [0; 4]),
-            is_drawn: Arc::new(move |s: &Sample, words: &[u32]| {
-                let hook: &SampleHook = known.get_or_init(|| twin::sample(text.exact(0)));
-                (hook.is_drawn)(s, words)
-            }),
+            is_drawn: Arc::new(
+                move |samples: &[Sample], words: &[u32], drawn: &mut [bool]| {
+                    let hook: &SampleHook = known.get_or_init(|| twin::sample(text.exact(0)));
+                    (hook.is_drawn)(samples, words, drawn)
+                },
+            ),
         });
     }
     if let Some(name) = &functions.surface {
         let (text, known) = (text(vec![name.clone()]), OnceLock::new());
-        hooks.surface = Some(Arc::new(move |s: Surface, words: &[u32]| {
-            known.get_or_init(|| twin::surface(text.exact(0), text.rounded(0)))(s, words)
+        hooks.surface = Some(Arc::new(move |surfaces: &mut [Surface], words: &[u32]| {
+            known.get_or_init(|| twin::surface(text.exact(0), text.rounded(0)))(surfaces, words)
         }));
         hooks.surface_inputs = surface_inputs(&declaration.tokens);
     }
@@ -108,10 +110,10 @@ fn hooks(effect: &Effect, declaration: &Declaration<'_>) -> Hooks {
             .iter()
             .any(|token| token.text == "image_previous");
         let (text, known) = (text(vec![name.clone()]), OnceLock::new());
-        let finish = move |q: Pixel, picture: &Picture<'_>, words: &[u32]| {
+        let finish = move |pixels: &mut [Pixel], picture: &Picture<'_>, words: &[u32]| {
             let hook: &ImageHook =
                 known.get_or_init(|| twin::image(text.exact(0), text.rounded(0), reads_previous));
-            (hook.finish)(q, picture, words)
+            (hook.finish)(pixels, picture, words)
         };
         hooks.image = Some(ImageHook {
             reads_previous,
@@ -125,13 +127,13 @@ fn hooks(effect: &Effect, declaration: &Declaration<'_>) -> Hooks {
             .map(|pass| pass.name.clone())
             .collect();
         let (text, known, count) = (text(names), OnceLock::new(), declaration.passes.len());
-        let run = move |index: usize, at: &ImageAt<'_>, words: &[u32]| {
+        let run = move |index: usize, pixels: &[ImageAt<'_>], words: &[u32]| {
             let hook: &PassHook = known.get_or_init(|| {
                 let [exact, rounded] = [LazyText::exact, LazyText::rounded]
                     .map(|functions| (0..count).map(|pass| functions(&text, pass)).collect());
                 twin::passes(Vec::new(), exact, rounded)
             });
-            (hook.run)(index, at, words)
+            (hook.run)(index, pixels, words)
         };
         // A pass of a built-in effect is called by what follows the effect's name.
         let named = |pass: &ImagePass| {

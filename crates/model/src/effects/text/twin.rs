@@ -2,8 +2,10 @@
 //! floats in f64.
 
 use std::{
+    array,
     cell::RefCell,
     collections::HashMap,
+    slice,
     sync::{Arc, Weak},
 };
 
@@ -18,7 +20,7 @@ use crate::{
         },
         image_file::ImageFile,
     },
-    evaluator::{Host, LowerError, NoHost, Options, Precision, Program, Word},
+    evaluator::{Host, LANES, LowerError, NoHost, Options, Precision, Program, Registers, Word},
     math::hash,
     params::{Field, ValueType, WgslType},
 };
@@ -52,11 +54,11 @@ const IMAGE_FILES: usize = 16;
 /// How much the inputs of a color may be off on the f32 side, relative to the largest component of
 /// each.
 const INPUT_ERROR: f64 = 1.0 / (1 << 17) as f64;
-/// Programs whose registers a thread keeps.
-const MAX_PROGRAMS: usize = 64;
+/// Bytes of registers that a thread keeps, beside those of the program that it runs.
+const MAX_BYTES: usize = 16 << 20;
 
 /// The registers of a program, which they do not hold.
-type Kept = (Weak<Program>, Vec<Word>);
+type Kept = (Weak<Program>, Registers);
 
 /// One function of a linked module.
 #[derive(Clone, Debug)]
@@ -79,10 +81,12 @@ impl Function {
         effect: &Effect,
         precision: Precision,
     ) -> Result<Self, LowerError> {
+        let members = effect.members();
         let mut options = Options {
             precision,
             source: Some(text),
             externals: EXTERNALS.map(str::to_owned).to_vec(),
+            alike: members.iter().map(|field| field.wgsl.words()).sum(),
             ..Options::default()
         };
         options.limits.steps = MAX_STEPS;
@@ -90,7 +94,7 @@ impl Function {
         let images = effect.images().iter().map(|image| image.file.clone());
         Ok(Self {
             program,
-            members: effect.members(),
+            members,
             images: images.collect(),
         })
     }
@@ -100,75 +104,154 @@ impl Function {
         self.program.instructions()
     }
 
-    /// Evaluates the function for arguments and parameter words; none if it does not end.
-    fn call<R>(
+    /// Evaluates the function for at most [`LANES`] samples, given the parameter words: `write`
+    /// writes the arguments of all, `read` reads the results into the samples. Those for which it
+    /// does not end are `left` alone.
+    fn run<S>(
         &self,
-        mut arguments: Vec<Word>,
+        samples: &mut [S],
         words: &[u32],
         host: &mut dyn Host,
-        read: impl FnOnce(&mut Reader<'_>) -> R,
-    ) -> Option<R> {
+        write: impl Fn(&mut Inputs<'_, S>),
+        read: impl Fn(&mut Outputs<'_, S>),
+        left: impl Fn(&mut S),
+    ) {
         thread_local! {
             /// By the address of the program, which no other has as long as it is weakly held.
             static REGISTERS: RefCell<HashMap<usize, Kept>> = RefCell::new(HashMap::new());
         }
+        let mut alike = Vec::new();
         for field in &self.members {
             let words = &words[field.offset / 4..][..field.wgsl.words()];
-            arguments.extend(words.iter().map(|&word| match field.wgsl {
+            alike.extend(words.iter().map(|&word| match field.wgsl {
                 WgslType::F32 | WgslType::Vec4F32 => Word::from_f64(f32::from_bits(word).into()),
                 WgslType::I32 | WgslType::U32 => Word::from_u32(word),
             }));
         }
         REGISTERS.with_borrow_mut(|kept| {
             let address = Arc::as_ptr(&self.program) as usize;
-            if kept.len() >= MAX_PROGRAMS && !kept.contains_key(&address) {
+            let bytes = |kept: &HashMap<usize, Kept>| -> usize {
+                kept.values().map(|(_, registers)| registers.bytes()).sum()
+            };
+            if !kept.contains_key(&address) {
                 kept.retain(|_, (program, _)| program.strong_count() > 0);
-                if kept.len() >= MAX_PROGRAMS {
+                if bytes(kept) > MAX_BYTES {
                     kept.clear();
                 }
             }
             let (_, registers) = kept
                 .entry(address)
                 .or_insert_with(|| (Arc::downgrade(&self.program), self.program.registers()));
+            write(&mut Inputs {
+                program: &self.program,
+                registers,
+                samples,
+                next: 0,
+            });
             let images = &self.images;
             let mut host = ImageFileHost { images, host };
-            let result = self.program.call(registers, &arguments, &mut host).ok()?;
-            Some(read(&mut Reader(result)))
-        })
+            let ended = self
+                .program
+                .run(registers, &alike, samples.len(), &mut host);
+            read(&mut Outputs {
+                program: &self.program,
+                registers,
+                samples,
+                ended,
+                next: 0,
+            });
+            let each = samples.iter_mut().enumerate();
+            each.filter(|(lane, _)| ended >> lane & 1 == 0)
+                .for_each(|(_, sample)| left(sample));
+        });
     }
 }
 
-/// Scalars of a struct, in the order in which it declares them.
-#[derive(Default)]
-struct Writer(Vec<Word>);
+/// Writes the scalars of a struct in the order in which it declares them, those of all samples
+/// together.
+struct Inputs<'a, S> {
+    program: &'a Program,
+    registers: &'a Registers,
+    samples: &'a [S],
+    next: usize,
+}
 
-impl Writer {
-    fn floats<const N: usize>(&mut self, values: [f64; N]) -> &mut Self {
-        self.0.extend(values.map(Word::from_f64));
+impl<S> Inputs<'_, S> {
+    fn words<const N: usize>(&mut self, of: impl Fn(&S) -> [Word; N]) -> &mut Self {
+        let rows: [_; N] =
+            std::array::from_fn(|word| self.program.argument(self.registers, self.next + word));
+        self.next += N;
+        // What the function does not read has no row.
+        if rows.iter().any(Option::is_some) {
+            for (lane, sample) in self.samples.iter().enumerate() {
+                for (row, word) in rows.iter().zip(of(sample)) {
+                    if let Some(row) = row {
+                        row[lane].set(word);
+                    }
+                }
+            }
+        }
         self
     }
 
-    fn whole(&mut self, value: u32) -> &mut Self {
-        self.0.push(Word::from_u32(value));
-        self
+    fn floats<const N: usize>(&mut self, of: impl Fn(&S) -> [f64; N]) -> &mut Self {
+        self.words(|sample| of(sample).map(Word::from_f64))
+    }
+
+    fn whole<const N: usize>(&mut self, of: impl Fn(&S) -> [u32; N]) -> &mut Self {
+        self.words(|sample| of(sample).map(Word::from_u32))
     }
 }
 
 /// Reads scalars in the same order.
-struct Reader<'a>(&'a [Word]);
+struct Outputs<'a, S> {
+    program: &'a Program,
+    registers: &'a Registers,
+    samples: &'a mut [S],
+    ended: u64,
+    next: usize,
+}
 
-impl Reader<'_> {
-    fn word(&mut self) -> Word {
-        let (first, rest) = self
-            .0
-            .split_first()
-            .expect("a result has the scalars of its type");
-        self.0 = rest;
-        *first
+impl<S> Outputs<'_, S> {
+    /// Leaves what the function has not changed as it was.
+    fn words<T, const N: usize>(
+        &mut self,
+        of: impl for<'s> Fn(&'s mut S) -> &'s mut [T; N],
+        value: impl Fn(Word) -> T,
+    ) -> &mut Self {
+        for word in 0..N {
+            let Some(row) = self.program.result(self.registers, self.next + word) else {
+                continue;
+            };
+            for (lane, sample) in self.samples.iter_mut().enumerate() {
+                if self.ended >> lane & 1 == 1 {
+                    of(sample)[word] = value(row[lane].get());
+                }
+            }
+        }
+        self.next += N;
+        self
     }
 
-    fn floats<const N: usize>(&mut self) -> [f64; N] {
-        std::array::from_fn(|_| self.word().to_f64())
+    fn floats<const N: usize>(
+        &mut self,
+        of: impl for<'s> Fn(&'s mut S) -> &'s mut [f64; N],
+    ) -> &mut Self {
+        self.words(of, Word::to_f64)
+    }
+
+    fn float(&mut self, of: impl for<'s> Fn(&'s mut S) -> &'s mut f64) -> &mut Self {
+        self.floats(|sample| array::from_mut(of(sample)))
+    }
+
+    fn whole(&mut self, of: impl for<'s> Fn(&'s mut S) -> &'s mut u32) -> &mut Self {
+        self.words(|sample| array::from_mut(of(sample)), Word::to_u32)
+    }
+
+    /// Passes over words.
+    fn skip(&mut self, words: usize) -> &mut Self {
+        self.next += words;
+        self
     }
 }
 
@@ -198,70 +281,106 @@ fn perturbed<const N: usize>(values: [f64; N], index: u32, strength: f64) -> [f6
     std::array::from_fn(|component| values[component] + sign(component) * strength * largest)
 }
 
+/// How much inputs are moved to a side of a step.
+fn strength(step_offset: f64) -> f64 {
+    if step_offset == 0.0 {
+        0.0
+    } else {
+        INPUT_ERROR * step_offset.signum()
+    }
+}
+
+/// Hands samples to `run` that are evaluated alike: in f32, as `rounded`, to one side of a step, else
+/// as `exact`.
+fn each_side<'f, S>(
+    samples: &mut [S],
+    [exact, rounded]: [&'f Function; 2],
+    step_offset: impl Fn(&S) -> f64,
+    mut run: impl FnMut(&mut [S], &'f Function),
+) {
+    let is_above = |sample: &S| step_offset(sample) > 0.0;
+    for side in samples.chunk_by_mut(|a, b| is_above(a) == is_above(b)) {
+        for together in side.chunks_mut(LANES) {
+            let function = if is_above(&together[0]) {
+                rounded
+            } else {
+                exact
+            };
+            run(together, function);
+        }
+    }
+}
+
 /// The surface hook. To one side of a step the function is evaluated in f32, as `rounded`: what
 /// constants alone decide is moved by no input.
 pub fn surface(exact: Function, rounded: Function) -> Arc<SurfaceFunction> {
-    Arc::new(move |mut s: Surface, words: &[u32]| {
-        let function = if s.step_offset > 0.0 {
-            &rounded
-        } else {
-            &exact
-        };
-        let strength = INPUT_ERROR
-            * if s.step_offset == 0.0 {
-                0.0
-            } else {
-                s.step_offset.signum()
-            };
-        let mut arguments = Writer::default();
-        arguments
-            .floats(perturbed(s.color.to_array(), 0, strength))
-            .floats(perturbed(s.glow.to_array(), 1, strength))
-            .floats(perturbed(s.position.to_array(), 2, strength))
-            .floats(perturbed(s.normal.to_array(), 3, strength))
-            .floats(perturbed(s.flat_normal.to_array(), 4, strength))
-            .floats(perturbed(s.view.to_array(), 5, strength))
-            .floats(perturbed(s.center.to_array(), 6, strength))
-            .floats(perturbed(s.center_screen.to_array(), 7, strength))
-            .floats(perturbed(s.screen.to_array(), 8, strength))
-            .floats(perturbed(s.pixel.to_array(), 9, strength))
-            .floats(perturbed(s.barycentrics.to_array(), 10, strength))
-            .floats(perturbed(s.edge_distance_px.to_array(), 11, strength))
-            .floats(perturbed([s.depth_m], 12, strength))
-            .floats(perturbed([s.pixel_size_m], 13, strength))
-            .floats(perturbed([s.flat_depth_m], 14, strength))
-            .floats(s.depth_range_m.to_array())
-            .whole(s.triangle_id)
-            .floats([s.rank, s.lit])
-            .floats(perturbed(s.finish.specular.to_array(), 15, strength))
-            .floats([s.finish.metallic, s.finish.roughness, s.finish.occlusion]);
-        let read = function.call(arguments.0, words, &mut NoHost, |result| {
-            s.color = DVec4::from_array(result.floats());
-            s.glow = DVec3::from_array(result.floats());
-            s.position = DVec3::from_array(result.floats());
-            s.normal = DVec3::from_array(result.floats());
-            s.flat_normal = DVec3::from_array(result.floats());
-            s.view = DVec3::from_array(result.floats());
-            s.center = DVec3::from_array(result.floats());
-            s.center_screen = DVec2::from_array(result.floats());
-            s.screen = DVec2::from_array(result.floats());
-            s.pixel = DVec2::from_array(result.floats());
-            s.barycentrics = DVec3::from_array(result.floats());
-            s.edge_distance_px = DVec3::from_array(result.floats());
-            [s.depth_m, s.pixel_size_m, s.flat_depth_m] = result.floats();
-            s.depth_range_m = DVec2::from_array(result.floats());
-            s.triangle_id = result.word().to_u32();
-            [s.rank, s.lit] = result.floats();
-            s.finish.specular = DVec4::from_array(result.floats());
-            let finish = &mut s.finish;
-            [finish.metallic, finish.roughness, finish.occlusion] = result.floats();
-            s
-        });
-        read.unwrap_or(Surface {
-            color: DVec4::NAN,
-            ..s
-        })
+    Arc::new(move |surfaces: &mut [Surface], words: &[u32]| {
+        let sides = [&exact, &rounded];
+        each_side(
+            surfaces,
+            sides,
+            |s| s.step_offset,
+            |together, function| {
+                let (write, read) = (write_surfaces, read_surfaces);
+                let left = |s: &mut Surface| s.color = DVec4::NAN;
+                function.run(together, words, &mut NoHost, write, read, left);
+            },
+        );
     })
+}
+
+fn write_surfaces(inputs: &mut Inputs<'_, Surface>) {
+    fn moved<const N: usize>(s: &Surface, values: impl Into<[f64; N]>, index: u32) -> [f64; N] {
+        perturbed(values.into(), index, strength(s.step_offset))
+    }
+    inputs
+        .floats(|s| moved(s, s.color, 0))
+        .floats(|s| moved(s, s.glow, 1))
+        .floats(|s| moved(s, s.position, 2))
+        .floats(|s| moved(s, s.normal, 3))
+        .floats(|s| moved(s, s.flat_normal, 4))
+        .floats(|s| moved(s, s.view, 5))
+        .floats(|s| moved(s, s.center, 6))
+        .floats(|s| moved(s, s.center_screen, 7))
+        .floats(|s| moved(s, s.screen, 8))
+        .floats(|s| moved(s, s.pixel, 9))
+        .floats(|s| moved(s, s.barycentrics, 10))
+        .floats(|s| moved(s, s.edge_distance_px, 11))
+        .floats(|s| moved(s, [s.depth_m], 12))
+        .floats(|s| moved(s, [s.pixel_size_m], 13))
+        .floats(|s| moved(s, [s.flat_depth_m], 14))
+        .floats(|s| s.depth_range_m.to_array())
+        .whole(|s| [s.triangle_id])
+        .floats(|s| [s.rank, s.lit])
+        .floats(|s| moved(s, s.finish.specular, 15))
+        .floats(|s| [s.finish.metallic, s.finish.roughness, s.finish.occlusion]);
+}
+
+fn read_surfaces(outputs: &mut Outputs<'_, Surface>) {
+    outputs
+        .floats(|s| s.color.as_mut())
+        .floats(|s| s.glow.as_mut())
+        .floats(|s| s.position.as_mut())
+        .floats(|s| s.normal.as_mut())
+        .floats(|s| s.flat_normal.as_mut())
+        .floats(|s| s.view.as_mut())
+        .floats(|s| s.center.as_mut())
+        .floats(|s| s.center_screen.as_mut())
+        .floats(|s| s.screen.as_mut())
+        .floats(|s| s.pixel.as_mut())
+        .floats(|s| s.barycentrics.as_mut())
+        .floats(|s| s.edge_distance_px.as_mut())
+        .float(|s| &mut s.depth_m)
+        .float(|s| &mut s.pixel_size_m)
+        .float(|s| &mut s.flat_depth_m)
+        .floats(|s| s.depth_range_m.as_mut())
+        .whole(|s| &mut s.triangle_id)
+        .float(|s| &mut s.rank)
+        .float(|s| &mut s.lit)
+        .floats(|s| s.finish.specular.as_mut())
+        .float(|s| &mut s.finish.metallic)
+        .float(|s| &mut s.finish.roughness)
+        .float(|s| &mut s.finish.occlusion);
 }
 
 /// Answers what an effect asks of the pictures that it takes as inputs, and lets `host` answer the
@@ -272,11 +391,11 @@ struct ImageFileHost<'a> {
 }
 
 impl Host for ImageFileHost<'_> {
-    fn external(&mut self, index: usize, arguments: &[Word], result: &mut [Word]) {
+    fn external(&mut self, index: usize, lane: usize, arguments: &[Word], result: &mut [Word]) {
         let last = self.images.len().saturating_sub(1);
         let image = || self.images.get((arguments[0].to_u32() as usize).min(last));
         match index.checked_sub(IMAGE_FILES) {
-            None => self.host.external(index, arguments, result),
+            None => self.host.external(index, lane, arguments, result),
             Some(0) => {
                 let size = image().map_or([1, 1], |image| image.size);
                 result.copy_from_slice(&size.map(Word::from_u32));
@@ -290,19 +409,20 @@ impl Host for ImageFileHost<'_> {
     }
 }
 
-/// Answers what an image effect asks of the picture.
-struct PictureHost<'a>(&'a Picture<'a>, usize);
+/// Answers what an image effect asks of the picture at these pixels.
+struct PictureHost<'a>(&'a Picture<'a>, &'a [usize]);
 
 impl Host for PictureHost<'_> {
-    fn external(&mut self, index: usize, arguments: &[Word], result: &mut [Word]) {
-        let Self(picture, pixel) = self;
+    fn external(&mut self, index: usize, lane: usize, arguments: &[Word], result: &mut [Word]) {
+        let Self(picture, pixels) = self;
         let at = || {
             (
                 i64::from(arguments[0].to_i32()),
                 i64::from(arguments[1].to_i32()),
             )
         };
-        let row = *pixel as u32 / picture.width;
+        let pixel = pixels.get(lane).copied().unwrap_or(0);
+        let row = pixel as u32 / picture.width;
         match index {
             0 => result[0] = Word::from_bool(picture.has(at().0, at().1)),
             1 => {
@@ -315,7 +435,7 @@ impl Host for PictureHost<'_> {
                 let background = picture.background[row as usize].map(u32::from);
                 let bytes = picture
                     .previous
-                    .map_or(background, |previous| previous[*pixel].map(u32::from));
+                    .map_or(background, |previous| previous[pixel].map(u32::from));
                 result.copy_from_slice(&bytes.map(Word::from_u32));
             }
         }
@@ -324,36 +444,34 @@ impl Host for PictureHost<'_> {
 
 /// The image hook, in f32 to one side of a step as [`surface`].
 pub fn image(exact: Function, rounded: Function, reads_previous: bool) -> ImageHook {
-    let finish = move |mut q: Pixel, picture: &Picture<'_>, words: &[u32]| {
-        let function = if q.step_offset > 0.0 {
-            &rounded
-        } else {
-            &exact
-        };
-        let strength = INPUT_ERROR
-            * if q.step_offset == 0.0 {
-                0.0
-            } else {
-                q.step_offset.signum()
-            };
-        let mut arguments = Writer::default();
-        arguments
-            .floats(perturbed(q.color.to_array(), 0, strength))
-            .whole(q.x)
-            .whole(q.y);
-        let mut host = PictureHost(
-            picture,
-            q.y as usize * picture.width as usize + q.x as usize,
+    let finish = move |pixels: &mut [Pixel], picture: &Picture<'_>, words: &[u32]| {
+        let sides = [&exact, &rounded];
+        each_side(
+            pixels,
+            sides,
+            |q| q.step_offset,
+            |together, function| {
+                let index = |q: &Pixel| q.y as usize * picture.width as usize + q.x as usize;
+                let indices: Vec<usize> = together.iter().map(index).collect();
+                function.run(
+                    together,
+                    words,
+                    &mut PictureHost(picture, &indices),
+                    |inputs| {
+                        inputs
+                            .floats(|q| perturbed(q.color.to_array(), 0, strength(q.step_offset)))
+                            .whole(|q| [q.x, q.y]);
+                    },
+                    |outputs| {
+                        outputs
+                            .floats(|q| q.color.as_mut())
+                            .whole(|q| &mut q.x)
+                            .whole(|q| &mut q.y);
+                    },
+                    |q| q.color = DVec4::NAN,
+                );
+            },
         );
-        let read = function.call(arguments.0, words, &mut host, |result| {
-            q.color = DVec4::from_array(result.floats());
-            [q.x, q.y] = [result.word().to_u32(), result.word().to_u32()];
-            q
-        });
-        read.unwrap_or(Pixel {
-            color: DVec4::NAN,
-            ..q
-        })
     };
     ImageHook {
         reads_previous,
@@ -362,11 +480,11 @@ pub fn image(exact: Function, rounded: Function, reads_previous: bool) -> ImageH
 }
 
 /// Answers what a pass asks of the picture and of the pass before it.
-struct PassHost<'a>(&'a ImageAt<'a>);
+struct PassHost<'a>(&'a [ImageAt<'a>]);
 
 impl Host for PassHost<'_> {
-    fn external(&mut self, index: usize, arguments: &[Word], result: &mut [Word]) {
-        let at = self.0;
+    fn external(&mut self, index: usize, lane: usize, arguments: &[Word], result: &mut [Word]) {
+        let at = &self.0[lane];
         let pixel = || [0, 1].map(|axis| i64::from(arguments[axis].to_i32()));
         let place = || DVec2::new(arguments[0].to_f64(), arguments[1].to_f64());
         let color = match index {
@@ -398,7 +516,9 @@ impl Host for PassHost<'_> {
             }
             14 => at.kept(pixel()[0], pixel()[1]),
             15 => at.kept_at(place()),
-            _ => return PictureHost(at.input.picture, 0).external(index, arguments, result),
+            _ => {
+                return PictureHost(at.input.picture, &[]).external(index, lane, arguments, result);
+            }
         };
         result.copy_from_slice(&color.to_array().map(Word::from_f64));
     }
@@ -407,20 +527,35 @@ impl Host for PassHost<'_> {
 /// The passes of an effect, each evaluated in f64, and in f32 to one side of a step as
 /// [`surface`].
 pub fn passes(passes: Vec<ImagePass>, exact: Vec<Function>, rounded: Vec<Function>) -> PassHook {
-    let run = move |index: usize, at: &ImageAt<'_>, words: &[u32]| {
-        let functions = if at.step_offset > 0.0 {
-            &rounded
-        } else {
-            &exact
-        };
-        let mut arguments = Writer::default();
-        for word in [at.x as u32, at.y as u32, at.size[0], at.size[1], at.scale] {
-            arguments.whole(word);
-        }
-        let read = |result: &mut Reader<'_>| DVec4::from_array(result.floats());
-        functions[index]
-            .call(arguments.0, words, &mut PassHost(at), read)
-            .unwrap_or(DVec4::NAN)
+    let run = move |index: usize, pixels: &[ImageAt<'_>], words: &[u32]| {
+        let mut written: Vec<(ImageAt<'_>, DVec4)> =
+            pixels.iter().map(|at| (*at, DVec4::NAN)).collect();
+        let sides = [&exact[index], &rounded[index]];
+        let mut next = 0;
+        each_side(
+            &mut written,
+            sides,
+            |(at, _)| at.step_offset,
+            |together, function| {
+                let mut host = PassHost(&pixels[next..next + together.len()]);
+                next += together.len();
+                function.run(
+                    together,
+                    words,
+                    &mut host,
+                    |inputs| {
+                        inputs
+                            .whole(|(at, _)| [at.x as u32, at.y as u32])
+                            .whole(|(at, _)| [at.size[0], at.size[1], at.scale]);
+                    },
+                    |outputs| {
+                        outputs.floats(|(_, color)| color.as_mut());
+                    },
+                    |_| {},
+                );
+            },
+        );
+        written.into_iter().map(|(_, color)| color).collect()
     };
     PassHook {
         passes,
@@ -430,18 +565,28 @@ pub fn passes(passes: Vec<ImagePass>, exact: Vec<Function>, rounded: Vec<Functio
 
 /// The sample hook.
 pub fn sample(function: Function) -> SampleHook {
-    let is_drawn = move |s: &Sample, words: &[u32]| {
-        let mut arguments = Writer::default();
-        arguments.whole(s.x).whole(s.y).whole(s.triangle);
-        s.areas
-            .iter()
-            .chain(&s.setup)
-            .for_each(|&word| arguments.0.push(Word::from_u32(word)));
-        function
-            .call(arguments.0, words, &mut NoHost, |result| {
-                result.word().to_bool()
-            })
-            .unwrap_or(true)
+    let is_drawn = move |samples: &[Sample], words: &[u32], drawn: &mut [bool]| {
+        let mut tested: Vec<(Sample, u32)> = samples.iter().map(|s| (*s, 1)).collect();
+        for together in tested.chunks_mut(LANES) {
+            function.run(
+                together,
+                words,
+                &mut NoHost,
+                |inputs| {
+                    inputs
+                        .whole(|(s, _)| [s.x, s.y, s.triangle])
+                        .whole(|(s, _)| s.areas)
+                        .whole(|(s, _)| s.setup);
+                },
+                |outputs| {
+                    outputs.whole(|(_, is_drawn)| is_drawn);
+                },
+                |_| {},
+            );
+        }
+        for ((_, is_drawn), drawn) in tested.iter().zip(drawn) {
+            *drawn &= *is_drawn != 0;
+        }
     };
     SampleHook {
         has_setup: false,
@@ -456,20 +601,29 @@ pub fn sample(function: Function) -> SampleHook {
 /// from floats; the text computes it anew.
 pub fn sample_setup(function: Function) -> Arc<SetupFunction> {
     Arc::new(move |t: &TriangleSetup, words: &[u32], _: Option<u32>| {
-        let mut arguments = Writer::default();
-        arguments.whole(t.triangle);
-        t.corners
-            .as_flattened()
-            .iter()
-            .for_each(|at| arguments.0.push(Word::from_i32(*at)));
-        arguments.whole(t.outline).whole(t.size[0]).whole(t.size[1]);
-        arguments
-            .floats(t.center.to_array())
-            .floats(t.center_screen.to_array());
-        let read = |result: &mut Reader<'_>| std::array::from_fn(|_| result.word().to_u32());
-        function
-            .call(arguments.0, words, &mut NoHost, read)
-            .unwrap_or([0; 4])
+        let mut setup = (t, [0; 4]);
+        function.run(
+            slice::from_mut(&mut setup),
+            words,
+            &mut NoHost,
+            |inputs| {
+                let corner =
+                    |k: usize| move |t: &TriangleSetup| t.corners[k].map(i32::cast_unsigned);
+                inputs
+                    .whole(|(t, _)| [t.triangle])
+                    .whole(|(t, _)| corner(0)(t))
+                    .whole(|(t, _)| corner(1)(t))
+                    .whole(|(t, _)| corner(2)(t))
+                    .whole(|(t, _)| [t.outline, t.size[0], t.size[1]])
+                    .floats(|(t, _)| t.center.to_array())
+                    .floats(|(t, _)| t.center_screen.to_array());
+            },
+            |outputs| {
+                outputs.words(|(_, setup)| setup, Word::to_u32);
+            },
+            |_| {},
+        );
+        setup.1
     })
 }
 
@@ -501,41 +655,8 @@ fn moved_within(v: &Vertex, bound: &ErrorBound, turn: u32) -> Vertex {
 
 /// The vertex hook: `double` in f64, `single` with every operation rounded to f32.
 pub fn vertex(double: Function, single: Function, needs_triangle: bool) -> VertexHook {
-    let evaluate = |function: &Function, v: &Vertex, words: &[u32]| {
-        let mut arguments = Writer::default();
-        arguments
-            .floats(v.position.to_array())
-            .floats(v.offset.to_array())
-            .floats(v.normal.to_array())
-            .floats(v.flat_normal.to_array())
-            .floats(v.center.to_array())
-            .floats(v.arm.to_array())
-            .floats(v.center_screen.to_array())
-            .whole(v.triangle)
-            .whole(v.cell_px);
-        let read = function.call(arguments.0, words, &mut NoHost, |result| {
-            let _position: [f64; 3] = result.floats();
-            let [offset, normal] = [(); 2].map(|()| DVec3::from_array(result.floats()));
-            // What lies between is only read.
-            let _: [f64; 11] = result.floats();
-            let _triangle = result.word();
-            (offset, normal, result.word().to_u32())
-        });
-        read.map_or(
-            Vertex {
-                offset: DVec3::NAN,
-                ..*v
-            },
-            |(offset, normal, cell_px)| Vertex {
-                offset,
-                normal,
-                cell_px,
-                ..*v
-            },
-        )
-    };
     let (moving, fields) = (double.clone(), double.members.clone());
-    let moved = move |v: Vertex, words: &[u32]| evaluate(&moving, &v, words);
+    let moved = move |vertices: &mut [Vertex], words: &[u32]| move_all(&moving, vertices, words);
     let limit = move |_: f64, words: &[u32]| {
         lengths(&fields)
             .map(|field| field.get(words)[0].abs())
@@ -544,7 +665,6 @@ pub fn vertex(double: Function, single: Function, needs_triangle: bool) -> Verte
     // The text is evaluated at inputs at the ends of their bounds and in f32. Twice the largest
     // difference is the bound.
     let error_bound = move |v: &Vertex, bound: ErrorBound, words: &[u32]| {
-        let exact = evaluate(&double, v, words);
         let rounded = Vertex {
             position: v.position.as_vec3().as_dvec3(),
             offset: v.offset.as_vec3().as_dvec3(),
@@ -556,11 +676,16 @@ pub fn vertex(double: Function, single: Function, needs_triangle: bool) -> Verte
             triangle: v.triangle,
             cell_px: v.cell_px,
         };
-        let others = (0..6)
-            .map(|turn| evaluate(&double, &moved_within(v, &bound, turn), words))
-            .chain([evaluate(&single, &rounded, words)]);
+        let mut exact: [Vertex; 7] = std::array::from_fn(|turn| match turn {
+            0 => *v,
+            _ => moved_within(v, &bound, turn as u32 - 1),
+        });
+        move_all(&double, &mut exact, words);
+        let mut rounded = [rounded];
+        move_all(&single, &mut rounded, words);
+        let [exact, others @ ..] = exact;
         let (mut offset_m, mut normal) = (0.0_f64, 0.0_f64);
-        for other in others {
+        for other in others.into_iter().chain(rounded) {
             offset_m = offset_m.max((other.offset - exact.offset).abs().max_element());
             normal = normal.max((other.normal - exact.normal).abs().max_element());
         }
@@ -581,5 +706,36 @@ pub fn vertex(double: Function, single: Function, needs_triangle: bool) -> Verte
         moved: Arc::new(moved),
         error_bound: Arc::new(error_bound),
         max_displacement_m: Arc::new(limit),
+    }
+}
+
+fn move_all(function: &Function, vertices: &mut [Vertex], words: &[u32]) {
+    for together in vertices.chunks_mut(LANES) {
+        function.run(
+            together,
+            words,
+            &mut NoHost,
+            |inputs| {
+                inputs
+                    .floats(|v| v.position.to_array())
+                    .floats(|v| v.offset.to_array())
+                    .floats(|v| v.normal.to_array())
+                    .floats(|v| v.flat_normal.to_array())
+                    .floats(|v| v.center.to_array())
+                    .floats(|v| v.arm.to_array())
+                    .floats(|v| v.center_screen.to_array())
+                    .whole(|v| [v.triangle, v.cell_px]);
+            },
+            |outputs| {
+                // What lies between is only read.
+                outputs
+                    .skip(3)
+                    .floats(|v| v.offset.as_mut())
+                    .floats(|v| v.normal.as_mut())
+                    .skip(12)
+                    .whole(|v| &mut v.cell_px);
+            },
+            |v| v.offset = DVec3::NAN,
+        );
     }
 }
