@@ -3,7 +3,7 @@
 
     python3 scripts/mutants.py --program target/release/rasterlab              a whole campaign
     python3 scripts/mutants.py --program ... --resume RESULTS.json             go on after an interruption
-    python3 scripts/mutants.py --list                                          show the mutants, run none
+    python3 scripts/mutants.py --list [--resume RESULTS.json]                  show the mutants, and parts that no command links; run none
     python3 scripts/mutants.py --program ... --only 0f3a91c2d4                 one mutant, by its id
     python3 scripts/mutants.py --self-test                                     check this script's own parts
 
@@ -11,7 +11,7 @@ Every mutant is one changed line of one shader file, in a private copy of the fo
 suite (scripts/mutation/suite.py) first runs with unchanged shaders; every command must succeed, and the program records which heads and
 sections of files each links, so that a mutant meets only commands that link its own. The first command that does not succeed catches the mutant:
 a failed comparison, a lost device, a crash, or no end within the limit. A mutant that is no valid program counts apart, as does one that
-scripts/mutants-equivalent.txt lists with the reason why it changes nothing. The score is caught / (valid - equivalent).
+scripts/mutants-equivalent.txt lists with the reason why it changes nothing, or why no command links its part. The score is caught / (valid - equivalent).
 
 Exit codes: 0 every mutant was run and the score reaches --at-least; 1 it does not, or time ran out before the last mutant; 2 wrong
 usage, or the unchanged shaders fail.
@@ -20,6 +20,7 @@ usage, or the unchanged shaders fail.
 import argparse
 import concurrent.futures
 import hashlib
+import json
 import os
 import shutil
 import signal
@@ -138,8 +139,18 @@ class Campaign:
         return every[args.first : end]
 
     def equivalents(self):
-        """Ids of the mutants that the list names."""
-        return {mutant["id"] for mutant in self.mutants if equivalent.reason(self.entries, mutant) is not None}
+        """Ids of the mutants that the list names, and of those in parts that no command links, for a reason that the list gives."""
+        named = {mutant["id"] for mutant in self.mutants if equivalent.reason(self.entries, mutant) is not None}
+        unreached = [mutant for mutant in self.done.values() if mutant["kind"] == "unreached"]
+        return named | {mutant["id"] for mutant in unreached if equivalent.elsewhere(self.entries, mutant["part"])}
+
+    def unlinked(self):
+        """Parts that have mutants, that no command of the baseline links, and of which the list gives no reason."""
+        linked = [one["parts"] for one in self.baseline.values()]
+        if None in linked:
+            return []
+        parts = {part for part, mutants in choose.every(self.texts).items() if mutants and choose.excluded(part) is None}
+        return sorted(part for part in parts.difference(*linked) if not equivalent.elsewhere(self.entries, part))
 
     def prepare(self):
         """Finds the program and the suite, and reads the results to continue."""
@@ -304,6 +315,10 @@ class Campaign:
             shutil.rmtree(self.scratch, ignore_errors=True)
         return is_whole
 
+    def say_unlinked(self):
+        for part in self.unlinked():
+            say(f"no command of the suite links {part}")
+
     @staticmethod
     def progress(number, of, tried, equivalents):
         outcome = results.outcome(tried, equivalents)
@@ -327,6 +342,7 @@ class Campaign:
                 say(line)
             if mutant["kind"] == "unreached":
                 say("  (no command of the suite reads this file)")
+        self.say_unlinked()
         for mutant in of_run:
             if mutant["id"] in equivalents and results.CAUGHT.get(mutant["kind"]):
                 say(f"note: listed as equivalent, and caught: {equivalent.line(mutant, mutant['why'])}")
@@ -346,6 +362,10 @@ def listed(campaign):
             say(line)
         if reason:
             say(f"  (equivalent: {reason})")
+    if campaign.args.resume:
+        with open(campaign.args.resume, encoding="utf-8") as file:
+            campaign.baseline = json.load(file)["baseline"]
+        campaign.say_unlinked()
     say(f"{len(campaign.mutants)} mutants")
 
 

@@ -22,9 +22,6 @@ pub fn found() -> PathBuf {
 }
 
 /// The files of a target's corpus by name, with their bytes.
-///
-/// # Errors
-/// The folder or a file of it cannot be read.
 pub fn read(target: &Target) -> io::Result<Vec<(String, Vec<u8>)>> {
     let mut paths: Vec<PathBuf> = fs::read_dir(folder(target))?
         .map(|entry| entry.map(|entry| entry.path()))

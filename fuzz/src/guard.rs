@@ -29,7 +29,7 @@ static MOST: AtomicUsize = AtomicUsize::new(0);
 /// The system's allocator, which counts the bytes that are held.
 pub struct Counting;
 
-fn taken(bytes: usize) {
+fn count_taken(bytes: usize) {
     let held = HELD.fetch_add(bytes, Relaxed) + bytes;
     MOST.fetch_max(held, Relaxed);
 }
@@ -41,12 +41,12 @@ fn given_back(bytes: usize) {
 // SAFETY: every call goes to `System` with the arguments as they came.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        taken(layout.size());
+        count_taken(layout.size());
         unsafe { System.alloc(layout) }
     }
 
     unsafe fn alloc_zeroed(&self, layout: Layout) -> *mut u8 {
-        taken(layout.size());
+        count_taken(layout.size());
         unsafe { System.alloc_zeroed(layout) }
     }
 
@@ -57,7 +57,7 @@ unsafe impl GlobalAlloc for Counting {
 
     unsafe fn realloc(&self, block: *mut u8, layout: Layout, size: usize) -> *mut u8 {
         // Both blocks exist while the bytes are copied.
-        taken(size);
+        count_taken(size);
         let moved = unsafe { System.realloc(block, layout, size) };
         given_back(layout.size());
         moved

@@ -1,6 +1,6 @@
 //! What developers run beyond the tests, on this machine or, as one file, on another with a GPU.
 
-use std::{fs, path::Path, path::PathBuf, process::ExitCode, sync::Arc, thread};
+use std::{fs, path::Path, path::PathBuf, process::ExitCode, sync::Arc, thread, time::Instant};
 
 use clap::{Args, Parser, Subcommand};
 use pollster::FutureExt as _;
@@ -47,13 +47,6 @@ enum Command {
         /// List the cases and draw nothing
         #[arg(long)]
         list: bool,
-    },
-    /// Every pair of a scene, an effect, an option and a work distribution in few pictures
-    Pairs {
-        #[command(flatten)]
-        device: Device,
-        #[arg(long, default_value_t = 0)]
-        seed: u32,
     },
 }
 
@@ -103,9 +96,6 @@ fn main() -> ExitCode {
         } => device
             .open()
             .and_then(|renderer| run_cases(renderer, filter.as_deref(), seed)),
-        Command::Pairs { device, seed } => device
-            .open()
-            .and_then(|renderer| run_cases(renderer, Some("every-pair"), seed)),
     };
     match faults {
         Ok(0) => ExitCode::SUCCESS,
@@ -125,20 +115,20 @@ fn run_cases(mut renderer: Renderer, filter: Option<&str>, seed: u32) -> Result<
     }
     let mut failed = 0;
     for case in cases {
-        let gpu = renderer.gpu().clone();
-        let report = case.run(&mut renderer, seed, &|_| true);
-        let seconds = report.ms / 1e3;
+        let (gpu, began) = (renderer.gpu().clone(), Instant::now());
+        let report = case.run(&mut renderer, seed);
         println!(
-            "{:32} {:20} {:6} pictures {seconds:8.1} s",
-            report.name,
+            "{:32} {:20} {:6} pictures {:8.1} s",
+            case.name,
             report.outcome.word(),
-            report.counts.pictures
+            report.pictures,
+            began.elapsed().as_secs_f64()
         );
         for note in &report.notes {
             println!("  {note}");
         }
         if let Outcome::Failed(why) = &report.outcome {
-            eprintln!("case {}: {why} (seed {seed})", report.name);
+            eprintln!("case {}: {why} (seed {seed})", case.name);
             failed += 1;
             // A failure may leave queues and caches in a wrong state.
             renderer = Renderer::new(gpu.clone());

@@ -55,10 +55,6 @@ enum Outcome {
 }
 
 /// The number of presets that failed.
-///
-/// # Errors
-/// An effect of `--with` that does not exist, a device that was lost, or a folder that cannot be
-/// written.
 pub fn run(mut renderer: Renderer, args: &Options) -> Result<usize, String> {
     let with = effects_with(&args.with)?;
     let mut counts = [0; 4];
@@ -128,9 +124,6 @@ fn store(args: &Options, id: &str, preset: &Preset) -> Result<String, String> {
 }
 
 /// Draws a preset with every exact option that it allows, and judges each picture.
-///
-/// # Errors
-/// The device was lost.
 fn judge(renderer: &mut Renderer, preset: &Preset) -> Result<Outcome, String> {
     let gpu = renderer.gpu().clone();
     let judged = catch_unwind(AssertUnwindSafe(|| faults(renderer, preset)));

@@ -28,20 +28,20 @@ pub const PNG_TEXT: View = View {
 
 /// The JSON of a GLB.
 pub const GLB_JSON: View = View {
-    open: |glb| split(glb).map(|[json, _]| json.to_vec()),
-    close: |glb, json| joined(json, split(glb).map_or(&[], |[_, binary]| binary)),
+    open: |glb| split_glb(glb).map(|[json, _]| json.to_vec()),
+    close: |glb, json| joined(json, split_glb(glb).map_or(&[], |[_, binary]| binary)),
 };
 
 /// The binary chunk of a GLB.
 pub const GLB_BINARY: View = View {
-    open: |glb| split(glb).map(|[_, binary]| binary.to_vec()),
-    close: |glb, binary| joined(split(glb).map_or(&[], |[json, _]| json), binary),
+    open: |glb| split_glb(glb).map(|[_, binary]| binary.to_vec()),
+    close: |glb, binary| joined(split_glb(glb).map_or(&[], |[json, _]| json), binary),
 };
 
 /// The TOML in a shared line.
 pub const SHARED_TOML: View = View {
-    open: unpacked,
-    close: |_, toml| packed(toml),
+    open: unpack,
+    close: |_, toml| pack(toml),
 };
 
 const PNG: &[u8] = b"\x89PNG\r\n\x1a\n";
@@ -119,7 +119,7 @@ fn with_text(bytes: &[u8], text: &[u8]) -> Vec<u8> {
 }
 
 /// JSON and binary chunk of a GLB; a `.gltf` is JSON alone.
-fn split(glb: &[u8]) -> Option<[&[u8]; 2]> {
+fn split_glb(glb: &[u8]) -> Option<[&[u8]; 2]> {
     if glb.first() == Some(&b'{') {
         return Some([glb, &[]]);
     }
@@ -149,7 +149,7 @@ pub fn joined(json: &[u8], binary: &[u8]) -> Vec<u8> {
     glb
 }
 
-fn unpacked(line: &[u8]) -> Option<Vec<u8>> {
+fn unpack(line: &[u8]) -> Option<Vec<u8>> {
     let packed = std::str::from_utf8(line)
         .ok()?
         .trim()
@@ -162,7 +162,7 @@ fn unpacked(line: &[u8]) -> Option<Vec<u8>> {
     Some(toml)
 }
 
-fn packed(toml: &[u8]) -> Vec<u8> {
+fn pack(toml: &[u8]) -> Vec<u8> {
     let mut deflate = DeflateEncoder::new(Vec::new(), Compression::fast());
     deflate.write_all(toml).expect("memory takes all bytes");
     format!(

@@ -1,14 +1,15 @@
 """The list of mutants that change nothing that may be seen, each with the reason: scripts/mutants-equivalent.txt.
 
     PART: BEFORE => AFTER ## REASON
+    PART: => ## REASON
 
-on one line each; PART is a file, or a section of one (`variants/coverage/fixed`); BEFORE and AFTER are the line without and with the
+on one line each. The second form is of a part that no command links on some adapters: it counts where one does. PART is a file, or a section of one (`variants/coverage/fixed`); BEFORE and AFTER are the line without and with the
 change, indentation left out; AFTER is empty where the line is dropped. An entry is found by these texts, not by a line number, so it outlives changes elsewhere in the file.
 """
 
 import re
 
-ENTRY = re.compile(r"(?P<part>[\w/]+): (?P<before>.+?) =>(?: (?P<after>.*?))? ## (?P<reason>.+)")
+ENTRY = re.compile(r"(?P<part>[\w/]+):(?: (?P<before>.+?))?? =>(?: (?P<after>.*?))? ## (?P<reason>.+)")
 
 
 class BadEntry(ValueError):
@@ -24,7 +25,7 @@ def parse(text):
         found = ENTRY.fullmatch(line.strip())
         if not found:
             raise BadEntry(f"line {number} is no entry: {line.strip()!r}; write PART: BEFORE => AFTER ## REASON")
-        key = found["part"], found["before"].strip(), (found["after"] or "").strip()
+        key = found["part"], (found["before"] or "").strip(), (found["after"] or "").strip()
         if key in entries:
             raise BadEntry(f"line {number} repeats an entry: {line.strip()!r}")
         entries[key] = found["reason"].strip()
@@ -33,6 +34,11 @@ def parse(text):
 
 def reason(entries, mutant):
     return entries.get((mutant["part"], mutant["before"].strip(), mutant["after"].strip()))
+
+
+def elsewhere(entries, part):
+    """Why no command may link a part; none where one should."""
+    return entries.get((part, "", ""))
 
 
 def line(mutant, why="REASON"):
@@ -45,6 +51,6 @@ def stale(entries, parts):
     gone = []
     for part, before, after in entries:
         lines = {one.strip() for one in parts.get(part, ("", ""))[1].split("\n")}
-        if before not in lines:
+        if part not in parts or before not in lines:
             gone.append(f"{part}: {before} => {after}")
     return gone

@@ -3,8 +3,9 @@
 import glob
 import os
 
-# Steps in the order in which a mutant meets them: the gallery, small; presets with options and scenes that the gallery lacks, in
-# scripts/mutation/presets; extreme cases; cases that need code and random presets, of the developers' program; effects of files.
+# Steps of equal cost in the order in which a mutant meets them: the gallery, small; presets with options and scenes that the gallery lacks, in
+# scripts/mutation/presets, and goldens of effects of files in scripts/mutation/files, whose oracle would follow a change of the library; extreme
+# cases; cases that need code and random presets, of the developers' program; effects of files.
 STEPS = ["verify", "options", "stress", "cases", "fuzz", "examples"]
 
 # The developers' program, beside the program, and its steps.
@@ -20,13 +21,16 @@ SLOW_STRESS = ["million-triangles", "many-layers-of-xray", "layers-of-glass", "t
 
 # Cases that need code and take little time; a name stands for all cases whose names contain it.
 CASES = [
-    "d3d-snap", "translation", "guard-band", "non-finite", "relative-positions", "coplanar-layers", "near-ties", "degenerate-triangles", "queues",
-    "empty-pictures", "mirrored-transforms", "draw-limit", "unusual-skins", "rotations-of-any-length", "after-a-day", "shuffled-triangles",
-    "near-plane-sweep", "culled-walk", "culled-cameras", "culled-behind-holes", "clipped-in-turns", "played-particles", "skins-beside-other-meshes",
+    "d3d-snap", "translation", "non-finite", "near-ties", "degenerate-triangles", "queues",
+    "empty-pictures", "mirrored-transforms", "shuffled-triangles",
+    "near-plane-sweep", "culled-cameras", "culled-behind-holes", "clipped-in-turns", "skins-beside-other-meshes",
 ]  # fmt: skip
 
 # Examples that take the oracle half a minute of a CPU, and whose library files others read too.
 SLOW_EXAMPLES = ["strata"]
+
+# Most probes of one command, so that a mutant which one of them notices does not wait for all.
+REST = 20
 
 # `fuzz` in parts of this many presets, so that one part suffices to detect most.
 FUZZ_PART = 10
@@ -65,6 +69,7 @@ def probes(root, fuzz_count, fuzz_seed, leave_out=(), cases=()):
 
     found = presets("verify", ["verify", *SMALL], "presets")
     found += presets("options", ["verify", "--frames", "2"], os.path.join("scripts", "mutation", "presets"))
+    found += presets("options", ["check", "--render"], os.path.join("scripts", "mutation", "files"))
     extremes = [os.path.basename(path)[: -len(".toml")] for path in sorted(glob.glob(os.path.join(root, "presets", "extremes", "*.toml")))]
     quick = [name for name in extremes if name not in SLOW_STRESS or name in cases]
     found += [Probe("stress", ["stress", "--filter"], [name], ",") for name in quick]
@@ -78,22 +83,24 @@ def probes(root, fuzz_count, fuzz_seed, leave_out=(), cases=()):
 
 
 def commands(relevant, stem, seconds):
-    """Groups of probes, each one command, for a mutant of the file `stem`: of every step first the cheapest probe, one that is named
-    after the file if there is one, then the others."""
+    """Groups of probes, each one command, for a mutant of the file `stem`: first those that are named after the file, then the cheapest
+    of every step, then the others; what takes less time comes first."""
 
-    def rank(probe):
-        return (stem not in probe.name, seconds.get(probe.name, 0.0))
+    def cost(probe):
+        return seconds.get(probe.name, 0.0)
 
-    groups = []
+    ranked = []
     for step in STEPS:
-        of_step = sorted((probe for probe in relevant if probe.step == step), key=rank)
         by_head = {}
-        for probe in of_step:
+        for probe in sorted((probe for probe in relevant if probe.step == step), key=cost):
             by_head.setdefault(tuple(probe.head), []).append(probe)
         for same in by_head.values():
-            first = 1 if len(same) > 2 else len(same)
-            groups += [group for group in (same[:first], same[first : first + 6], same[first + 6 :]) if group]
-    return groups
+            named = [probe for probe in same if any(stem in os.path.basename(word) for word in probe.inputs)]
+            others = [probe for probe in same if probe not in named]
+            rest = [others[begin : begin + REST] for begin in range(10, len(others), REST)]
+            ranked += enumerate((named[:2], named[2:], others[:2], others[2:10], *rest))
+    ranked = [(rank, sum(map(cost, group)), group) for rank, group in ranked if group]
+    return [group for _, _, group in sorted(ranked, key=lambda one: one[:2])]
 
 
 def merged(group):

@@ -125,9 +125,6 @@ impl Common {
     }
 
     /// `--memory`, or `RASTERLAB_MEMORY`.
-    ///
-    /// # Errors
-    /// It is no size, or too small.
     pub fn memory_budget(&self) -> Result<Option<MemoryBudget>, String> {
         let variable = || {
             std::env::var("RASTERLAB_MEMORY")

@@ -44,9 +44,6 @@ pub enum Backend {
 
 impl Backend {
     /// Opens the chosen backend and names it on stderr. There is no fallback.
-    ///
-    /// # Errors
-    /// No suitable adapter, or several that match.
     pub fn open(common: &Common, streams: &Streams) -> Result<Self, CliError> {
         let backend = match backend_choice(common) {
             BackendChoice::Oracle => Self::Oracle,
@@ -183,9 +180,6 @@ impl Backend {
     }
 
     /// The verdict on a capture of this backend. The oracle's own picture is the reference.
-    ///
-    /// # Errors
-    /// As [`oracle::judge`].
     pub fn judged(
         &self,
         scene: &Scene,
@@ -274,10 +268,6 @@ pub fn adapter_json(summary: &AdapterSummary, caps: &Caps) -> Value {
 }
 
 /// The scene of a preset. Warns of scopes that match no part of it.
-///
-/// # Errors
-/// The scene is not available, or `--strict` makes a warning, or a model that breaks its standard,
-/// an error.
 pub fn scene_of(
     common: &Common,
     preset_file: &PresetFile,
@@ -291,9 +281,6 @@ pub fn scene_of(
 }
 
 /// The scene of a preset, with warnings about scopes that match no part of it.
-///
-/// # Errors
-/// As [`scene_of`].
 pub fn scene_with_warnings(
     common: &Common,
     preset_file: &PresetFile,

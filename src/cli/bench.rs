@@ -1,12 +1,10 @@
 //! `bench`: time and error, one row per scene and option. Every row with a time has an error.
 
-use serde_json::Value;
-
 use super::{
     args::{Bench, Common},
     backend::Backend,
     error::{CliError, Exit},
-    measured::{judge, print_rows, subjects},
+    measured::{self, Column, figure, json_rows, judge, print_rows, subjects},
     open::open_alone,
     streams::Streams,
     trade,
@@ -68,13 +66,7 @@ pub fn run(common: &Common, args: &Bench, streams: &mut Streams) -> Result<Exit,
         });
     }
     bar.finish_and_clear();
-    let results = || {
-        rows.iter()
-            .map(serde_json::to_value)
-            .collect::<Result<Vec<Value>, _>>()
-            .map_err(CliError::usage)
-    };
-    print_rows(args, streams, &backend, &lines(&rows), results)?;
+    print_rows(args, streams, &backend, &lines(&rows), || json_rows(&rows))?;
     rows.iter()
         .filter_map(|row| row.note.as_ref())
         .for_each(|note| streams.note(note));
@@ -108,69 +100,36 @@ fn each_effect(common: &Common) -> Result<Vec<(String, Stack)>, CliError> {
     Ok(stacks)
 }
 
+/// Columns for deformed vertices and particles only where there are any.
 fn lines(rows: &[BenchRow]) -> Vec<Vec<String>> {
-    let head = [
-        "SCENE",
-        "TRIANGLES",
-        "OPTION",
-        "MS P50",
-        "MS P95",
-        "N",
-        "WRONG",
-        "SNAP",
-        "HOLES",
-        "DOUBLE",
-        "MAX",
-        "RMS",
-        "ADAPTER",
-    ];
-    let mut lines = vec![head.map(str::to_owned).to_vec()];
-    // Columns for deformed vertices and particles only where there are any.
     let deforms = rows.iter().any(|row| row.error.max_deform_px.is_some());
-    let before_adapter = head.len() - 1;
-    if deforms {
-        lines[0].insert(before_adapter, "DEFORM PX".into());
-    }
     let has_particles = rows.iter().any(|row| row.error.max_divergence_px.is_some());
-    if has_particles {
-        lines[0].insert(before_adapter, "DIVERGED PX".into());
-    }
-    let not_measured = || "not measured".to_owned();
-    let ms = |ms: Option<f64>| ms.map_or_else(not_measured, |ms| format!("{ms:.3}"));
-    let count = |count: Option<u64>| count.map_or_else(not_measured, |count| count.to_string());
-    lines.extend(rows.iter().map(|row| {
-        let e = &row.error;
-        let mut line = vec![
-            row.scene.clone(),
-            row.triangles.to_string(),
-            row.option.clone(),
-            ms(row.ms_p50),
-            ms(row.ms_p95),
-            row.samples.to_string(),
-            count(e.wrong_triangles),
-            count(e.explained_by_snap),
-            count(e.holes),
-            count(e.double_hits),
-            count(e.max_color_delta.map(u64::from)),
-            e.rms_color_delta
-                .map_or_else(not_measured, |rms| format!("{rms:.4}")),
-            row.adapter.clone(),
-        ];
-        if deforms {
-            line.insert(
-                before_adapter,
-                e.max_deform_px
-                    .map_or_else(not_measured, |px| format!("{px:.5}")),
-            );
-        }
-        if has_particles {
-            line.insert(
-                before_adapter,
-                e.max_divergence_px
-                    .map_or_else(not_measured, |px| format!("{px:.5}")),
-            );
-        }
-        line
-    }));
-    lines
+    let columns: &[Column<BenchRow>] = &[
+        ("SCENE", true, |row| row.scene.clone()),
+        ("TRIANGLES", true, |row| row.triangles.to_string()),
+        ("OPTION", true, |row| row.option.clone()),
+        ("MS P50", true, |row| figure(row.ms_p50, 3)),
+        ("MS P95", true, |row| figure(row.ms_p95, 3)),
+        ("N", true, |row| row.samples.to_string()),
+        ("WRONG", true, |row| count(row.error.wrong_triangles)),
+        ("SNAP", true, |row| count(row.error.explained_by_snap)),
+        ("HOLES", true, |row| count(row.error.holes)),
+        ("DOUBLE", true, |row| count(row.error.double_hits)),
+        ("MAX", true, |row| {
+            count(row.error.max_color_delta.map(u64::from))
+        }),
+        ("RMS", true, |row| figure(row.error.rms_color_delta, 4)),
+        ("DIVERGED PX", has_particles, |row| {
+            figure(row.error.max_divergence_px, 5)
+        }),
+        ("DEFORM PX", deforms, |row| {
+            figure(row.error.max_deform_px, 5)
+        }),
+        ("ADAPTER", true, |row| row.adapter.clone()),
+    ];
+    measured::lines(rows, columns)
+}
+
+fn count(count: Option<u64>) -> String {
+    figure(count.map(|count| count as f64), 0)
 }

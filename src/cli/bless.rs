@@ -97,7 +97,11 @@ fn preset_files(
         return Err(CliError::usage("name presets or effects, or use --all"));
     }
     if !args.all {
-        return args.names.iter().map(|name| named(common, name)).collect();
+        return args
+            .names
+            .iter()
+            .map(|name| find_preset(common, name))
+            .collect();
     }
     let entries = preset_file::gallery(&common.folders());
     let preset_files = entries
@@ -122,7 +126,7 @@ fn preset_files(
 
 /// The preset that every command finds under `name`, whose file gets a table `[test]` if it has
 /// none; or the first one of an effect, which is new.
-fn named(common: &Common, name: &str) -> Result<(PresetFile, Option<Writes>), CliError> {
+fn find_preset(common: &Common, name: &str) -> Result<(PresetFile, Option<Writes>), CliError> {
     let error = match open(common, name) {
         Ok(preset_file) => {
             let mut preset_file = preset_file.strict()?;

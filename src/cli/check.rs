@@ -107,9 +107,9 @@ pub fn check(
         finding.warnings.clone_from(&preset_file.warnings);
         let (scene, missing) = scene_with_warnings(common, &preset_file)?;
         finding.warnings.extend(missing);
-        planned(&preset_file.preset, &scene)?;
+        check_plan(&preset_file.preset, &scene)?;
         backend
-            .map(|backend| drawn(snapshots, &preset_file, &scene, backend))
+            .map(|backend| compare_with_golden(snapshots, &preset_file, &scene, backend))
             .transpose()
     });
     match outcome {
@@ -130,7 +130,7 @@ pub fn check(
 }
 
 /// Is there a kernel for the preset, on the best of adapters?
-fn planned(preset: &Preset, scene: &Scene) -> Result<(), CliError> {
+fn check_plan(preset: &Preset, scene: &Scene) -> Result<(), CliError> {
     let view = preset.view(scene, preset.output.size);
     let needs = Arc::new(Needs::of(scene, &draws(scene, &view)?, &view));
     let caps = Caps::ALL;
@@ -148,7 +148,7 @@ fn planned(preset: &Preset, scene: &Scene) -> Result<(), CliError> {
 
 type Comparison = (Option<Drawn>, Vec<String>);
 
-fn drawn(
+fn compare_with_golden(
     snapshots: Option<&Path>,
     preset_file: &PresetFile,
     scene: &Arc<Scene>,

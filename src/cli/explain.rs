@@ -58,7 +58,7 @@ pub fn run(common: &Common, args: &Explain, streams: &mut Streams) -> Result<Exi
                 .as_ref()
                 .is_none_or(|particles| particles.over_a_pixel == 0)
             {
-                check = checked(
+                check = check_prediction(
                     &scene,
                     &view.scaled(factor),
                     &stack.scaled(factor),
@@ -165,7 +165,7 @@ struct Check {
 
 /// Measures the predicted error; none for a picture without pixels or one that differs from frame
 /// to frame.
-fn checked(
+fn check_prediction(
     scene: &Scene,
     view: &View,
     stack: &Stack,

@@ -39,9 +39,6 @@ pub fn stdin_text() -> Result<String, CliError> {
 }
 
 /// Refuses a name for a picture that says it is no PNG.
-///
-/// # Errors
-/// An extension other than `png`.
 pub fn check_picture_name(template: &str) -> Result<(), CliError> {
     match Path::new(template).extension() {
         Some(extension) if !extension.eq_ignore_ascii_case("png") => Err(CliError::usage(format!(
@@ -53,9 +50,6 @@ pub fn check_picture_name(template: &str) -> Result<(), CliError> {
 
 /// The file that `template` names: with `{n}` the first free number, otherwise a file that is free
 /// or may be overwritten.
-///
-/// # Errors
-/// A malformed template, or an existing file without `force`.
 pub fn target(template: &str, names: &Names, force: bool) -> Result<PathBuf, CliError> {
     if has_number(template)? {
         return free_number(template, names, 1).map(|(_, path)| path);
@@ -69,9 +63,6 @@ pub fn target(template: &str, names: &Names, force: bool) -> Result<PathBuf, Cli
 
 /// Writes the whole file or nothing under the name that `template` gives, and returns it. A file
 /// that another process wrote in the meantime stays: with `{n}` the next free number is taken.
-///
-/// # Errors
-/// As [`target`], or the file cannot be written.
 pub fn create(
     template: &str,
     names: &Names,

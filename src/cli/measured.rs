@@ -85,6 +85,34 @@ pub fn judge<'a>(
     }
 }
 
+/// A column of a table of measurements: its head, whether there is anything to show in it, and the
+/// cell of a row.
+pub type Column<Row> = (&'static str, bool, fn(&Row) -> String);
+
+/// Heads and rows of the columns that show something.
+pub fn lines<Row>(rows: &[Row], columns: &[Column<Row>]) -> Vec<Vec<String>> {
+    let columns: Vec<_> = columns.iter().filter(|column| column.1).collect();
+    let head = columns.iter().map(|column| column.0.to_owned()).collect();
+    let line = |row| columns.iter().map(|column| (column.2)(row)).collect();
+    std::iter::once(head).chain(rows.iter().map(line)).collect()
+}
+
+/// A figure with so many digits, or that there is none.
+pub fn figure(figure: Option<f64>, digits: usize) -> String {
+    figure.map_or_else(
+        || "not measured".into(),
+        |figure| format!("{figure:.digits$}"),
+    )
+}
+
+/// The JSON of each row.
+pub fn json_rows<Row: serde::Serialize>(rows: &[Row]) -> Result<Vec<Value>, CliError> {
+    rows.iter()
+        .map(serde_json::to_value)
+        .collect::<Result<_, _>>()
+        .map_err(CliError::usage)
+}
+
 /// Prints rows in the chosen format, and a note on how they were measured.
 pub fn print_rows(
     args: &Bench,

@@ -188,10 +188,10 @@ fn window(cli: &Cli) -> Result<Exit, CliError> {
         open: cli.open.clone(),
         opened,
         adapter,
-        devices: None,
         folders: cli.common.window_folders(),
         config: crate::app::config_folder(),
         log: log.transpose()?.map(std::sync::Arc::new),
+        ..Default::default()
     };
     crate::app::run(options).map_err(CliError::window)?;
     Ok(Exit::Done)

@@ -66,9 +66,6 @@ pub fn run(common: &Common, args: &NewEffect, streams: &mut Streams) -> Result<E
 }
 
 /// The effect that an option names.
-///
-/// # Errors
-/// There is none of this name, or its file has a mistake.
 pub fn named_effect(folders: &Folders, option: &str, name: &str) -> Result<Arc<Effect>, CliError> {
     let found = folders.effects.find(name);
     let effect = found.map_err(|error| CliError::usage(error.to_string()))?;

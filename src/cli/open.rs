@@ -91,9 +91,6 @@ pub fn read(common: &Common, what: &str) -> Result<PresetFile, CliError> {
 
 /// Puts a look on the scene of `own`. Both scenes are read only if the look has lengths, that of
 /// `own` also if it has effects on parts.
-///
-/// # Errors
-/// One of the scenes cannot be read; with `--strict` also what the look had to leave out.
 pub fn land(common: &Common, look: &PresetFile, own: &PresetFile) -> Result<PresetFile, CliError> {
     let bounds = |preset_file: &PresetFile| {
         let bounds =

@@ -2,13 +2,12 @@
 
 use indicatif::ProgressBar;
 use pollster::FutureExt as _;
-use serde_json::Value;
 
 use super::{
     args::{Bench, Common},
     backend::Backend,
     error::{CliError, Exit},
-    measured::{judge, print_rows, subjects},
+    measured::{self, Column, figure, json_rows, judge, print_rows, subjects},
     streams::Streams,
 };
 use crate::{
@@ -54,25 +53,19 @@ pub fn run(common: &Common, args: &Bench, streams: &mut Streams) -> Result<Exit,
         let mut progress = Progress(&bar);
         let reference = Reference {
             references: &references,
-            judge: &|view, stack, capture| Some(judged(scene, view, stack, capture)),
+            judge: &|view, stack, capture| Some(judge_capture(scene, view, stack, capture)),
         };
         let id = &preset_file.id;
         let measured = trade(gpu, preset, scene, id, &options, &reference, &mut progress);
         rows.extend(measured.block_on()?);
     }
     bar.finish_and_clear();
-    let results = || {
-        rows.iter()
-            .map(serde_json::to_value)
-            .collect::<Result<Vec<Value>, _>>()
-            .map_err(CliError::usage)
-    };
     let table = if args.each {
         prices(&rows)
     } else {
         lines(&rows)
     };
-    print_rows(args, streams, &backend, &table, results)?;
+    print_rows(args, streams, &backend, &table, || json_rows(&rows))?;
     rows.iter()
         .filter(|row| row.error.is_none() || row.culled.is_some())
         .for_each(|row| {
@@ -104,7 +97,7 @@ impl Watch for Progress<'_> {
 }
 
 /// The oracle's verdict on a picture and on its shadows.
-fn judged(scene: &Scene, view: &View, stack: &Stack, capture: &Capture) -> Judged {
+fn judge_capture(scene: &Scene, view: &View, stack: &Stack, capture: &Capture) -> Judged {
     let light = oracle::shadow_errors(
         scene,
         view,
@@ -203,121 +196,75 @@ fn prices(rows: &[TradeRow]) -> Vec<Vec<String>> {
     table
 }
 
+/// Columns for the CPU's time, shadows and particles only where there are any.
 fn lines(rows: &[TradeRow]) -> Vec<Vec<String>> {
-    let head = [
-        "SCENE",
-        "TRIANGLES",
-        "OPTIONS",
-        "MS P50",
-        "MS P95",
-        "N",
-        "OUTLIERS",
-        "WRONG PPM",
-        "HOLES/MPX",
-        "DOUBLE/MPX",
-        "DEPTH PPM",
-        "MAX",
-        "RMS",
-        "CHANGED",
-        "MOVED PX",
-        "CRACKS/MPX",
-        "MIB",
-        "GAIN",
-    ];
-    let mut lines = vec![head.map(str::to_owned).to_vec()];
-    // Columns for particles only where there are any.
-    let has_particles = rows.iter().any(|row| {
-        row.error
-            .is_some_and(|error| error.max_divergence_px.is_some())
-    });
-    let before_bytes = head.len() - 2;
-    if has_particles {
-        ["DIVERGED PX", "MEAN M"]
-            .map(str::to_owned)
-            .into_iter()
-            .rev()
-            .for_each(|cell| lines[0].insert(before_bytes, cell));
-    }
-    let not_measured = || "not measured".to_owned();
-    let ms = |ms: Option<f64>| ms.map_or_else(not_measured, |ms| format!("{ms:.4}"));
-    // Columns for shadows only where a light casts any.
-    let has_light = rows.iter().any(|row| {
-        row.error
-            .is_some_and(|error| error.wrong_light_ppm.is_some())
-    });
-    let before_changed = head
-        .iter()
-        .position(|name| *name == "CHANGED")
-        .expect("a column");
-    if has_light {
-        lines[0].splice(
-            before_changed..before_changed,
-            ["LIGHT PPM".to_owned(), "LIGHT RMS".to_owned()],
-        );
-    }
-    // A column for CPU time only where the CPU selects dots.
     let has_cpu = rows.iter().any(|row| row.cpu_ms_p50.is_some());
-    if has_cpu {
-        lines[0].insert(5, "CPU MS".into());
-    }
-    lines.extend(rows.iter().map(|row| {
-        let figure = |figure: &dyn Fn(&TradeError) -> String| {
-            row.error.as_ref().map_or_else(not_measured, figure)
-        };
-        let mut line = vec![
-            row.scene.clone(),
-            row.triangles.to_string(),
-            row.options.clone(),
-            ms(row.ms_p50),
-            ms(row.ms_p95),
-            row.samples.to_string(),
-            row.outliers.to_string(),
-            figure(&|e| format!("{:.1}", e.wrong_ppm)),
-            figure(&|e| format!("{:.1}", e.holes_per_mpx)),
-            figure(&|e| format!("{:.1}", e.double_hits_per_mpx)),
-            figure(&|e| format!("{:.1}", e.wrong_depth_ppm)),
-            figure(&|e| e.max_color_delta.to_string()),
-            figure(&|e| format!("{:.4}", e.rms_color_delta)),
-            figure(&|e| e.changed_pixels.to_string()),
-            figure(&|e| format!("{:.4}", e.moved_px)),
-            figure(&|e| format!("{:.1}", e.cracks_per_mpx)),
-            format!("{:.1}", row.bytes as f64 / f64::from(1 << 20)),
-            if row.is_dominated { "no gain" } else { "-" }.into(),
-        ];
-        if has_particles {
-            line.insert(
-                before_bytes,
-                figure(&|e| {
-                    e.mean_divergence_m
-                        .map_or_else(|| "-".into(), |m| format!("{m:.1e}"))
-                }),
-            );
-            line.insert(
-                before_bytes,
-                figure(&|e| {
-                    e.max_divergence_px
-                        .map_or_else(|| "-".into(), |px| format!("{px:.4}"))
-                }),
-            );
-        }
-        if has_light {
-            let light = |fraction: Option<f64>, digits: usize| {
-                fraction.map_or_else(not_measured, |fraction| format!("{fraction:.digits$}"))
-            };
-            let cells = [
-                figure(&|e| light(e.wrong_light_ppm, 1)),
-                figure(&|e| light(e.rms_light, 4)),
-            ];
-            line.splice(before_changed..before_changed, cells);
-        }
-        if has_cpu {
-            line.insert(
-                5,
-                row.cpu_ms_p50
-                    .map_or_else(|| "-".into(), |ms| format!("{ms:.4}")),
-            );
-        }
-        line
-    }));
-    lines
+    let has = |figure: fn(&TradeError) -> Option<f64>| {
+        rows.iter()
+            .any(|row| row.error.as_ref().and_then(figure).is_some())
+    };
+    let has_light = has(|e| e.wrong_light_ppm);
+    let has_particles = has(|e| e.max_divergence_px);
+    let columns: &[Column<TradeRow>] = &[
+        ("SCENE", true, |row| row.scene.clone()),
+        ("TRIANGLES", true, |row| row.triangles.to_string()),
+        ("OPTIONS", true, |row| row.options.clone()),
+        ("MS P50", true, |row| figure(row.ms_p50, 4)),
+        ("MS P95", true, |row| figure(row.ms_p95, 4)),
+        ("CPU MS", has_cpu, |row| {
+            dash(row.cpu_ms_p50, |ms| format!("{ms:.4}"))
+        }),
+        ("N", true, |row| row.samples.to_string()),
+        ("OUTLIERS", true, |row| row.outliers.to_string()),
+        ("WRONG PPM", true, |row| error(row, 1, |e| e.wrong_ppm)),
+        ("HOLES/MPX", true, |row| error(row, 1, |e| e.holes_per_mpx)),
+        ("DOUBLE/MPX", true, |row| {
+            error(row, 1, |e| e.double_hits_per_mpx)
+        }),
+        ("DEPTH PPM", true, |row| {
+            error(row, 1, |e| e.wrong_depth_ppm)
+        }),
+        ("MAX", true, |row| {
+            error(row, 0, |e| e.max_color_delta.into())
+        }),
+        ("RMS", true, |row| error(row, 4, |e| e.rms_color_delta)),
+        ("LIGHT PPM", has_light, |row| {
+            figure(row.error.and_then(|e| e.wrong_light_ppm), 1)
+        }),
+        ("LIGHT RMS", has_light, |row| {
+            figure(row.error.and_then(|e| e.rms_light), 4)
+        }),
+        ("CHANGED", true, |row| {
+            error(row, 0, |e| e.changed_pixels as f64)
+        }),
+        ("MOVED PX", true, |row| error(row, 4, |e| e.moved_px)),
+        ("CRACKS/MPX", true, |row| {
+            error(row, 1, |e| e.cracks_per_mpx)
+        }),
+        ("DIVERGED PX", has_particles, |row| {
+            of_particles(row, |e| dash(e.max_divergence_px, |px| format!("{px:.4}")))
+        }),
+        ("MEAN M", has_particles, |row| {
+            of_particles(row, |e| dash(e.mean_divergence_m, |m| format!("{m:.1e}")))
+        }),
+        ("MIB", true, |row| {
+            format!("{:.1}", row.bytes as f64 / f64::from(1 << 20))
+        }),
+        ("GAIN", true, |row| {
+            if row.is_dominated { "no gain" } else { "-" }.into()
+        }),
+    ];
+    measured::lines(rows, columns)
+}
+
+fn dash(figure: Option<f64>, text: fn(f64) -> String) -> String {
+    figure.map_or_else(|| "-".into(), text)
+}
+
+fn error(row: &TradeRow, digits: usize, of: fn(&TradeError) -> f64) -> String {
+    figure(row.error.as_ref().map(of), digits)
+}
+
+fn of_particles(row: &TradeRow, text: fn(&TradeError) -> String) -> String {
+    row.error.as_ref().map_or_else(|| figure(None, 0), text)
 }

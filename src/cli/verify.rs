@@ -177,9 +177,6 @@ fn judged_by_own_text(preset: &Preset) -> Vec<String> {
 }
 
 /// Compares a preset with the oracle, with every visibility option that it allows.
-///
-/// # Errors
-/// It cannot be drawn, or a picture cannot be written.
 pub fn check(
     common: &Common,
     options: &Options<'_>,

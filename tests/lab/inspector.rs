@@ -1,7 +1,7 @@
 //! Promise: in the inspector every value has a control with a name, a drag is one undo step, and
 //! effects and clips are switched on and off.
 
-use eframe::egui::{self, Key, Modifiers, Role, vec2};
+use egui::{self, Key, Modifiers, Role, vec2};
 use egui_kittest::kittest::Queryable as _;
 
 use crate::harness::*;
@@ -229,7 +229,6 @@ fn an_effect_is_added_by_a_button_with_values_that_show_and_the_folders_are_with
 
 #[test]
 fn clips_are_chosen_held_and_blended_in_their_folder() {
-    draw_pictures();
     let Some(mut lab) = lab("builtin:tentacle?tess=3") else {
         return;
     };

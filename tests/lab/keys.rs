@@ -3,7 +3,7 @@
 
 use std::time::{Duration, Instant};
 
-use eframe::egui::{Event, Key, Modifiers, Role};
+use egui::{Event, Key, Modifiers, Role};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 
 use crate::harness::*;
@@ -72,7 +72,7 @@ fn words_typed_into_the_cheat_sheet_search_it_and_do_nothing_else() {
 
     // A click beside the field does not make typing dangerous, and F1 and Escape close the sheet.
     let view = lab.get_by_label("Picture").rect();
-    lab.drop_at(view.left_bottom() + eframe::egui::vec2(30.0, -60.0));
+    lab.drop_at(view.left_bottom() + egui::vec2(30.0, -60.0));
     lab.run_steps(3);
     send(&mut lab, typed("r"));
     assert_eq!(
@@ -82,6 +82,16 @@ fn words_typed_into_the_cheat_sheet_search_it_and_do_nothing_else() {
         ),
         ("overr", &before)
     );
+    // With Ctrl a letter is no text: it acts, and what is typed then goes into the dialog alone.
+    send(
+        &mut lab,
+        [vec![pressed(Key::O, Modifiers::COMMAND)], typed("rover")].concat(),
+    );
+    let [path, search] = ["Path", "Search actions and keys"].map(|field| text_of(&lab, field));
+    assert_eq!([path.as_str(), &search], ["rover", "overr"]);
+    press(&mut lab, Modifiers::NONE, Key::Escape);
+    send(&mut lab, typed("s"));
+    assert_eq!(text_of(&lab, "Search actions and keys"), "overrs");
     press(&mut lab, Modifiers::NONE, Key::F1);
     assert!(
         lab.query_by_role_and_label(Role::TextInput, "Search actions and keys")

@@ -4,7 +4,7 @@
 
 use std::time::{Duration, Instant};
 
-use eframe::egui::{Key, Modifiers, Role};
+use egui::{Key, Modifiers, Role};
 use egui_kittest::kittest::Queryable as _;
 
 use crate::harness::*;
@@ -98,6 +98,7 @@ fn child_that_runs_an_extreme_case() {
 }
 
 #[test]
+#[ignore = "slow: .ci/full"]
 fn memory_after_a_long_job_is_about_what_it_was_before() {
     if crate::common::gpu().is_none() {
         return;

@@ -329,7 +329,7 @@ impl Lab<'_> {
                 continue;
             }
             let capture = match renderer
-                .capture(&self.view, &self.preset.stack, &pinned(visibility))
+                .capture(&self.view, &self.preset.stack, &request_of(visibility))
                 .block_on()
             {
                 Err(error) if error.is_unsupported() => {
@@ -404,9 +404,11 @@ impl Lab<'_> {
         frames: usize,
     ) -> Result<Times, RenderError> {
         let ours = match contender {
-            Contender::Ours(visibility, renderer) => {
-                Some((renderer.as_mut(), &self.preset.stack, pinned(*visibility)))
-            }
+            Contender::Ours(visibility, renderer) => Some((
+                renderer.as_mut(),
+                &self.preset.stack,
+                request_of(*visibility),
+            )),
             Contender::Stacked(_, own) => Some((&mut own.1, &own.0, AccuracyRequest::default())),
             _ => None,
         };
@@ -451,7 +453,7 @@ impl Lab<'_> {
     }
 }
 
-fn pinned(visibility: Visibility) -> AccuracyRequest {
+fn request_of(visibility: Visibility) -> AccuracyRequest {
     AccuracyRequest {
         pins: PinnedOptions::of(visibility),
         ..AccuracyRequest::default()

@@ -54,9 +54,6 @@ pub struct Cases {
 
 impl Cases {
     /// Writes the files into a folder of their own, which goes with this.
-    ///
-    /// # Errors
-    /// The folder cannot be written.
     pub fn unpack() -> io::Result<Self> {
         let folder = TempDir::with_prefix("rasterlab-extremes")?;
         for file in BUILTIN_DIR
@@ -154,7 +151,7 @@ fn draw(
     let test = preset.test.clone().unwrap_or_default();
     let scene = match preset_file::load_scene(preset, preset_file.path.as_deref()) {
         Ok(scene) => scene,
-        Err(error) => return refused(&test, &error.to_string()),
+        Err(error) => return judge_refusal(&test, &error.to_string()),
     };
     let moments = preset.moments(&scene, preset.output.size);
     let Some((view, stack)) = moments.last() else {
@@ -176,7 +173,7 @@ fn draw(
         let capture = match capture {
             Ok(capture) => capture,
             Err(RenderError::Draw(DrawError::Canceled(_))) => return Err(End::Stopped),
-            Err(error) => return refused(&test, &error.to_string()),
+            Err(error) => return judge_refusal(&test, &error.to_string()),
         };
         let verdict = match oracle::judge(&scene, view, stack, &capture.picture()) {
             Ok(verdict) => verdict,
@@ -206,7 +203,7 @@ fn draw(
 }
 
 /// What a refusal is to the test.
-fn refused(test: &GoldenTest, sentence: &str) -> Result<Outcome, End> {
+fn judge_refusal(test: &GoldenTest, sentence: &str) -> Result<Outcome, End> {
     if test.expects_refusal(sentence) {
         Ok(Outcome::Refused(sentence.into()))
     } else {

@@ -62,9 +62,6 @@ pub fn read(bytes: &[u8]) -> Result<Vec<(PathBuf, Vec<u8>)>, String> {
 }
 
 /// An archive of these files, deflated. Paths are relative, with `/` between their parts.
-///
-/// # Errors
-/// A path is longer than 65,535 bytes: in one sentence.
 pub fn write<'a>(files: impl IntoIterator<Item = (&'a str, &'a [u8])>) -> Result<Vec<u8>, String> {
     let mut bytes = Vec::new();
     let mut archive = ZipArchiveWriter::new(&mut bytes);

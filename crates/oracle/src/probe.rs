@@ -7,7 +7,7 @@ use super::{
         coverage::{EdgeAtSample, Sample},
         draw_order::limited,
         particles::{check_particles, scene_with_particles},
-        sample_tests::{LeftOut, SampleTests},
+        sample_rules::{LeftOut, SampleTests},
         triangles::{OrientedTriangle, triangles},
     },
     shot::{Shot, drawn_view},

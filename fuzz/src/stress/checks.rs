@@ -12,8 +12,6 @@ pub enum EarlyEnd {
     Failed(String),
     /// The adapter lacks what this sentence names.
     Skipped(String),
-    /// The user stopped the run.
-    Stopped,
 }
 
 impl EarlyEnd {
@@ -34,21 +32,13 @@ impl From<String> for EarlyEnd {
 
 impl From<RenderError> for EarlyEnd {
     fn from(error: RenderError) -> Self {
-        if let RenderError::Draw(error) = error {
-            error.into()
-        } else {
-            Self::Failed(error.to_string())
-        }
+        Self::Failed(error.to_string())
     }
 }
 
 impl From<DrawError> for EarlyEnd {
     fn from(error: DrawError) -> Self {
-        if let DrawError::Canceled(_) = error {
-            Self::Stopped
-        } else {
-            Self::Failed(error.to_string())
-        }
+        Self::Failed(error.to_string())
     }
 }
 

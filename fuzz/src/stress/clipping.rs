@@ -1,4 +1,4 @@
-//! Clipping: the guard band, w at and near zero, and the near plane moving through a surface.
+//! Clipping: the near plane moving through a surface.
 
 use std::sync::Arc;
 
@@ -6,87 +6,22 @@ use glam::DVec3;
 
 use super::{
     case::{Case, Expectation},
-    checks::{EarlyEnd, check, once},
+    checks::{EarlyEnd, check},
     context::CaseContext,
     drawing::{pinned, stack},
-    scenes::{camera_view, pixel_view, scene_of_meshes, triangle_soup, triangle_soup_in_units},
+    scenes::{camera_view, scene_of_meshes, triangle_soup},
 };
-use crate::{
-    math::GUARD_BAND,
-    scene::{Scene, camera::Camera},
-};
+use crate::scene::{Scene, camera::Camera};
 
-pub const CASES: &[Case] = &[
-    Case {
-        number: 9,
-        name: "guard-band",
-        about: "corners on the guard band and one unit beyond, in all combinations: exact inside, no cracks beyond",
-        expectation: Expectation::Exact,
-        run: guard_band,
-    },
-    Case {
-        number: 11,
-        name: "near-plane-sweep",
-        about: "the near plane moves through a closed shell and the ground below it in 1,000 steps",
-        expectation: Expectation::Bounded(
-            "at most 48 pixels along a cut may show a neighboring triangle",
-        ),
-        run: near_plane_sweep,
-    },
-];
-
-fn guard_band(context: &mut CaseContext) -> Result<(), EarlyEnd> {
-    let view = pixel_view(16, 16);
-    let center = [2125, 1971];
-    let option = pinned(context.quick_option());
-    let (mut whole, mut cut) = (0, 0);
-    // Each coordinate of four corners lies on the guard band or one unit beyond.
-    for beyond in 0..256 {
-        let corner = |i: usize, [x, y]: [i32; 2]| {
-            let reach = |axis: usize| GUARD_BAND + (beyond >> (2 * i + axis) & 1);
-            [x * reach(0), y * reach(1)]
-        };
-        let [a, b, c, d] = [
-            corner(0, [-1, -1]),
-            corner(1, [1, -1]),
-            corner(2, [1, 1]),
-            corner(3, [-1, 1]),
-        ];
-        let faces = [
-            [center, a, b],
-            [center, b, c],
-            [center, c, d],
-            [center, d, a],
-        ];
-        let scene = scene_of_meshes(&[triangle_soup_in_units(&faces.map(|face| (face, 0.5)))]);
-        let what = format!("corners beyond: {beyond:08b}");
-        let capture = match beyond {
-            // All inside, one corner beyond in either axis, all beyond: on every option.
-            0 | 1 | 2 | 255 => context.exact_on_all(&scene, &view, &what)?,
-            _ => context.exact(&scene, &view, &stack(&[]), &option, &what)?.0,
-        };
-        once(&capture, &what)?;
-        for (vertex, [x, y]) in capture.geometry.vertices.iter().zip(faces.as_flattened()) {
-            let is_inside = x.abs().max(y.abs()) <= GUARD_BAND;
-            check!(
-                (vertex.flags == 0) == is_inside,
-                "{what}: the vertex at {x}, {y} has the flags {}",
-                vertex.flags
-            );
-            check!(
-                !is_inside || (vertex.x, vertex.y) == (*x, *y),
-                "{what}: {vertex:?} for {x}, {y}"
-            );
-        }
-        let counters = capture.frame.counters;
-        (whole, cut) = (whole + 4 - counters.clipped, cut + counters.clipped);
-    }
-    check!(
-        whole >= 4 * 16 && cut > 512,
-        "{whole} triangles whole, {cut} cut"
-    );
-    Ok(())
-}
+pub const CASES: &[Case] = &[Case {
+    number: 11,
+    name: "near-plane-sweep",
+    about: "the near plane moves through a closed shell and the ground below it in 1,000 steps",
+    expectation: Expectation::Bounded(
+        "at most 48 pixels along a cut may show a neighboring triangle",
+    ),
+    run: near_plane_sweep,
+}];
 
 fn near_plane_sweep(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let mut shell = Scene::clone(&*context.scene("sphere?triangles=300")?);

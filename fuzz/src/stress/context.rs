@@ -1,11 +1,12 @@
 //! The context of a running case: draws with every option and work distribution, compares with the
-//! oracle, counts, and can be stopped between pictures.
+//! oracle, and counts.
 
 use std::sync::Arc;
 
 use pollster::FutureExt as _;
 
 use super::{
+    case::{Outcome, Report},
     checks::{EarlyEnd, same},
     drawing::{self, WorkDistribution, exactness, pinned},
     scenes::Rng,
@@ -23,31 +24,14 @@ use crate::{
     scene::{Scene, builtin, view::View},
 };
 
-/// How much a case has drawn.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Counts {
-    pub pictures: u64,
-    pub pixels: u64,
-    pub triangles: u64,
-}
-
-/// The result of a case besides its outcome.
-pub(super) struct CaseResult {
-    pub refusal: Option<String>,
-    pub seed: Option<u32>,
-    pub notes: Vec<String>,
-    pub counts: Counts,
-}
-
 /// What a case draws with.
 pub struct CaseContext<'a> {
     pub renderer: &'a mut Renderer,
     seed: u32,
     is_seeded: bool,
-    keep_going: &'a dyn Fn(&str) -> bool,
-    counts: Counts,
+    pictures: u64,
     notes: Vec<String>,
-    refusal: Option<String>,
+    pub(super) refusal: Option<String>,
     /// The number of depth-band pixels is not limited.
     allows_any_depth_band: bool,
     /// Pictures are drawn on the strict option, where there is one.
@@ -66,19 +50,14 @@ pub(super) struct Strict {
 }
 
 impl<'a> CaseContext<'a> {
-    pub(super) fn new(
-        renderer: &'a mut Renderer,
-        seed: u32,
-        keep_going: &'a dyn Fn(&str) -> bool,
-    ) -> Self {
+    pub(super) fn new(renderer: &'a mut Renderer, seed: u32) -> Self {
         let default = renderer.gpu().caps.tuning();
         renderer.set_tuning(default);
         Self {
             renderer,
             seed,
             is_seeded: false,
-            keep_going,
-            counts: Counts::default(),
+            pictures: 0,
             notes: vec![],
             refusal: None,
             allows_any_depth_band: false,
@@ -87,14 +66,14 @@ impl<'a> CaseContext<'a> {
     }
 
     /// Restores the renderer.
-    pub(super) fn leave(self) -> CaseResult {
+    pub(super) fn leave(self, outcome: Outcome) -> Report {
         let default = self.renderer.gpu().caps.tuning();
         self.renderer.set_tuning(default);
-        CaseResult {
-            refusal: self.refusal,
+        Report {
+            outcome,
             seed: self.is_seeded.then_some(self.seed),
             notes: self.notes,
-            counts: self.counts,
+            pictures: self.pictures,
         }
     }
 
@@ -120,18 +99,6 @@ impl<'a> CaseContext<'a> {
     /// Records an expected refusal.
     pub(super) fn refused(&mut self, sentence: impl std::fmt::Display) {
         self.refusal = Some(sentence.to_string());
-    }
-
-    /// Counts a picture that is about to be drawn; ends the case if the user has stopped the run.
-    pub(super) fn step(&mut self, scene: &Scene, view: &View, what: &str) -> Result<(), EarlyEnd> {
-        self.counts.pictures += 1;
-        self.counts.pixels += view.pixels() as u64;
-        self.counts.triangles += scene.triangle_count();
-        if (self.keep_going)(what) {
-            Ok(())
-        } else {
-            Err(EarlyEnd::Stopped)
-        }
     }
 
     /// Runs a case with strict accuracy. Its remarks are dropped, since it made them before.
@@ -260,7 +227,7 @@ impl<'a> CaseContext<'a> {
         accuracy: &AccuracyRequest,
         what: &str,
     ) -> Result<Capture, EarlyEnd> {
-        self.step(scene, view, what)?;
+        self.pictures += 1;
         let accuracy = &self.requested(scene, view, stack, accuracy)?;
         drawing::captured(self.renderer, scene, view, stack, accuracy).map_err(|end| end.of(what))
     }
@@ -274,7 +241,7 @@ impl<'a> CaseContext<'a> {
         accuracy: &AccuracyRequest,
         what: &str,
     ) -> Result<(Capture, Verdict), EarlyEnd> {
-        self.step(scene, view, what)?;
+        self.pictures += 1;
         let accuracy = &self.requested(scene, view, stack, accuracy)?;
         let judged = drawing::judged(self.renderer, scene, view, stack, accuracy)
             .map_err(|end| end.of(what))?;
@@ -320,7 +287,7 @@ impl<'a> CaseContext<'a> {
                 "pictures that follow others are drawn with default accuracy".into(),
             ));
         }
-        self.step(scene, view, what)?;
+        self.pictures += 1;
         self.renderer.set_scene(scene).block_on()?;
         let capture = self
             .renderer

@@ -1,5 +1,4 @@
-//! Culling: pictures of a walk with two passes, each of which hides behind what the picture before
-//! it showed.
+//! Culling: what it leaves out is not seen, from anywhere.
 
 use std::sync::Arc;
 
@@ -7,9 +6,8 @@ use glam::{DMat3, DMat4, DQuat, DVec3, EulerRot};
 
 use super::{
     case::{Case, Expectation},
-    checks::{EarlyEnd, check, equal, same, same_nearest},
+    checks::{EarlyEnd, check, same, same_nearest},
     context::CaseContext,
-    drawing::stack,
     scenes::{Rng, scene_of_meshes, triangle_soup},
 };
 use crate::{
@@ -24,13 +22,6 @@ use crate::{
 };
 
 pub const CASES: &[Case] = &[
-    Case {
-        number: 34,
-        name: "culled-walk",
-        about: "a walk with two-pass culling, where each picture hides behind what the one before it showed: every picture is complete",
-        expectation: Expectation::Exact,
-        run: culled_walk,
-    },
     Case {
         number: 34,
         name: "culled-cameras",
@@ -95,42 +86,6 @@ pub fn walk(scene: &Scene, rng: &mut Rng, steps: usize, size: [u32; 2]) -> Vec<V
         ));
     }
     views
-}
-
-fn culled_walk(context: &mut CaseContext) -> Result<(), EarlyEnd> {
-    let options = context.options();
-    let mut rng = context.rng(0x3a1);
-    let mut hidden = 0;
-    // A town is one large mesh, whose meshlets lie far from its origin.
-    for (query, steps, size) in [
-        ("field?count=64&triangles=600", 8, [128, 96]),
-        ("cube-wall", 8, [128, 96]),
-        ("town", 12, [200, 136]),
-    ] {
-        let scene: Arc<Scene> = context.scene(query)?;
-        let views = walk(&scene, &mut rng, steps, size);
-        let mut meshlets = None;
-        for &option in &options {
-            let pins = PinnedOptions::of(option).with(Culling::TwoPass);
-            let accuracy = AccuracyRequest {
-                pins,
-                ..AccuracyRequest::default()
-            };
-            for (step, view) in views.iter().enumerate() {
-                let what = format!("{query}, step {step}, {}", pins.words());
-                let culled =
-                    context.exact_next(&scene, view, &stack(&["lambert"]), &accuracy, &what)?;
-                hidden += culled.hidden;
-                equal(
-                    &culled.all(),
-                    meshlets.get_or_insert(culled.all()),
-                    &format!("{what}: meshlets"),
-                )?;
-            }
-        }
-    }
-    check!(hidden > 0, "nothing was hidden on the whole walk");
-    Ok(())
 }
 
 /// A camera inside or just outside a scene, in a random direction.
@@ -348,7 +303,7 @@ impl BorderView {
 
 /// Draws with and without culling, which must be the same; returns how many meshes were culled and
 /// how many pixels were drawn.
-fn compared(
+fn compare_positions(
     context: &mut CaseContext,
     scene: &Arc<Scene>,
     view: &View,
@@ -414,7 +369,7 @@ fn slivers_at_the_border(context: &mut CaseContext) -> Result<(), EarlyEnd> {
         };
         let scene = border.slivers(&mut rng);
         let view = border.view(&scene);
-        let (culled, pixels) = compared(
+        let (culled, pixels) = compare_positions(
             context,
             &scene,
             &view,
@@ -433,7 +388,8 @@ fn slivers_at_the_border(context: &mut CaseContext) -> Result<(), EarlyEnd> {
         };
         let scene = border.spikes(&mut rng);
         let view = border.view(&scene);
-        let (_, pixels) = compared(context, &scene, &view, &format!("spikes, {projection:?}"))?;
+        let (_, pixels) =
+            compare_positions(context, &scene, &view, &format!("spikes, {projection:?}"))?;
         check!(pixels > 500, "spikes, {projection:?}: {pixels} pixels");
     }
     check!(

@@ -21,9 +21,6 @@ use crate::{
 pub const MAX_DEPTH_BAND_FRACTION: f64 = 0.01;
 
 /// Checks that all integers are exact, colors are within one step, and the depth band is small.
-///
-/// # Errors
-/// A sentence for each violation.
 pub fn exactness(errors: &ErrorReport) -> Result<(), String> {
     errors.within(&Budget {
         max_depth_band_pixels: ((errors.pixels as f64 * MAX_DEPTH_BAND_FRACTION) as u64).max(16),

@@ -1,64 +1,35 @@
-//! Scenes by effects by options by work distributions: every pair of them in few pictures, and
-//! their full products.
+//! Scenes by effects by options by work distributions: every pair of them in few pictures.
 
 use std::sync::Arc;
 
-use pollster::FutureExt as _;
-
 use super::{
     case::{Case, Expectation},
-    checks::{EarlyEnd, check, same},
+    checks::{EarlyEnd, check},
     context::CaseContext,
     covering::{covering_rows, scenes_of_rows},
-    drawing::{options, pinned, stack, tunings},
+    drawing::{options, stack, tunings},
     random::{Values, shake},
     scenes::Rng,
 };
 use crate::{
     accuracy::{
         AXES, Axis, AxisOption, Culling, DepthFormat, Parameters, PinnedOptions, PositionFormat,
-        RenderScale, Skinning, Visibility,
+        Skinning,
     },
-    effects::{EFFECTS, Stack},
-    gpu::{Capture, RenderError},
-    measure::{Budget, compare},
+    effects::Stack,
+    measure::Budget,
     plan::{AccuracyRequest, Caps, Tuning},
     preset::{ClipPlayback, Clock, Preset, SceneSource},
-    scene::{Scene, view::View},
+    scene::Scene,
 };
 
-pub const CASES: &[Case] = &[
-    Case {
-        number: 36,
-        name: "every-pair",
-        about: "every pair of a scene, an effect, an option and a work distribution, with the scenes that differ in their kernels; other pictures for each seed",
-        expectation: Expectation::Exact,
-        run: every_pair,
-    },
-    Case {
-        number: 36,
-        name: "scenes-by-options",
-        about: "every built-in scene with every exact option and work distribution",
-        expectation: Expectation::Exact,
-        run: scenes_by_options,
-    },
-    Case {
-        number: 36,
-        name: "scenes-by-effects",
-        about: "every built-in scene with every effect, default and random parameters",
-        expectation: Expectation::Exact,
-        run: scenes_by_effects,
-    },
-    Case {
-        number: 36,
-        name: "scenes-by-axes",
-        about: "every built-in scene with every option of every accuracy axis: drawn, or refused in words",
-        expectation: Expectation::Bounded(
-            "one triangle id in ten may differ where an option errs by design",
-        ),
-        run: scenes_by_axes,
-    },
-];
+pub const CASES: &[Case] = &[Case {
+    number: 36,
+    name: "every-pair",
+    about: "every pair of a scene, an effect, an option and a work distribution, with the scenes that differ in their kernels; other pictures for each seed",
+    expectation: Expectation::Exact,
+    run: every_pair,
+}];
 
 /// Rigid scenes: together they take each path through the kernels.
 pub const SCENES: &[&str] = &[
@@ -88,18 +59,6 @@ pub const GALLERY_SCENES: &[&str] = &[
     "finishes?tess=4&columns=3&lamps=5",
 ];
 
-/// Scenes of glass, which the hardware baseline draws as if it were opaque.
-pub const GLASS_SCENES: &[&str] = &[
-    "panes",
-    "sunglasses?tess=3",
-    "notch",
-    "hair?cards=60",
-    "crossing?tess=8",
-];
-
-/// Scenes with normal maps, which the hardware baseline does not read.
-const MAPPED_SCENES: &[&str] = &["golf?tess=3"];
-
 /// Scenes with deformed meshes, which the strict vertex stage refuses.
 pub const DEFORMED_SCENES: &[&str] = &["tentacle?tess=3", "walker?tess=1"];
 
@@ -118,24 +77,10 @@ const SCENES_OF_PAIRS: &[&str] = &[
     "tentacle?tess=3",
 ];
 
-/// A scene of every builtin.
-fn all_scenes() -> Vec<&'static str> {
-    [
-        SCENES,
-        GALLERY_SCENES,
-        GLASS_SCENES,
-        MAPPED_SCENES,
-        DEFORMED_SCENES,
-    ]
-    .concat()
-}
-
 /// Most particles of a picture.
 const MAX_PARTICLES: f64 = 200.0;
 /// Time of every picture, seconds: clips and particles have moved.
 const TIME_S: f64 = 0.4;
-
-// -------- factors
 
 /// Image effects whose many passes take long to compile. They read a finished picture, as those among the
 /// [`factors`] do, so each chain meets the options that are in the text of its passes and no others.
@@ -396,190 +341,15 @@ fn judge(
     Ok(())
 }
 
-// -------- full products
-
-fn scenes_by_options(context: &mut CaseContext) -> Result<(), EarlyEnd> {
-    let stack = stack(&["facet", "depth", "lambert"]);
-    let scenes = pictures(context, &all_scenes(), [320, 240])?;
-    let mut firsts: Vec<Capture> = Vec::new();
-    // All scenes share the kernels of an option and a tuning.
-    for option in context.options() {
-        for tuning in tunings() {
-            context.renderer.set_tuning(tuning);
-            for (at, (query, scene, view)) in scenes.iter().enumerate() {
-                let what = format!("{query}, {}, {tuning:?}", option.name());
-                let (capture, _) = context.exact(scene, view, &stack, &pinned(option), &what)?;
-                let Some(first) = firsts.get(at) else {
-                    firsts.push(capture);
-                    continue;
-                };
-                same(&capture, first, &what)?;
-                check!(
-                    capture.frame.color == first.frame.color,
-                    "{what}: other colors than the first picture's"
-                );
-                check!(
-                    capture.frame.counters == first.frame.counters,
-                    "{what}: other counters than the first picture's"
-                );
-            }
-        }
-    }
-    Ok(())
-}
-
-/// Query, scene and view.
-type Picture = (&'static str, Arc<Scene>, View);
-
-/// Every scene, seen as its preset shows it.
-fn pictures(
-    context: &CaseContext,
-    queries: &[&'static str],
-    size: [u32; 2],
-) -> Result<Vec<Picture>, EarlyEnd> {
-    let picture = |&query: &&'static str| {
-        let scene = context.scene(query)?;
-        let view = preset(query, &scene, Stack::default()).view(&scene, size);
-        Ok((query, scene, view))
-    };
-    queries.iter().map(picture).collect()
-}
-
-fn scenes_by_effects(context: &mut CaseContext) -> Result<(), EarlyEnd> {
-    context.allow_any_depth_band();
-    let mut rng = context.rng(37);
-    let (options, default) = (context.options(), context.renderer.gpu().caps.tuning());
-    let tunings: Vec<Tuning> = tunings().into_iter().chain([default]).collect();
-    let effects = EFFECTS.iter().filter(|effect| effect.name != "lambert");
-    for (turn, effect) in effects.enumerate() {
-        for query in all_scenes() {
-            let scene = context.scene(query)?;
-            for is_random in [false, true] {
-                let mut stack = stack(&["lambert", &effect.name]);
-                if is_random {
-                    stack = with_random_values(stack, &mut rng);
-                }
-                let preset = preset(query, &scene, stack);
-                let moments = preset.moments(&scene, [96, 72]);
-                let (view, stack) = moments
-                    .last()
-                    .ok_or_else(|| EarlyEnd::Failed(format!("{query} shows no moment")))?;
-                // Effects meet the options and tunings in turn, and all scenes of an effect the same,
-                // so that they share its kernels.
-                let turn = 2 * turn + usize::from(is_random);
-                let (option, tuning) =
-                    (options[turn % options.len()], tunings[turn % tunings.len()]);
-                context.renderer.set_tuning(tuning);
-                let what = format!(
-                    "{} on {query}, random: {is_random}, {}, {tuning:?}",
-                    effect.name,
-                    option.name()
-                );
-                let (_, verdict) = context.judged(&scene, view, stack, &pinned(option), &what)?;
-                let most = if is_random {
-                    1.0
-                } else {
-                    Budget::default().max_step_band_fraction
-                };
-                let judgement = verdict.report.within(&Budget {
-                    max_step_band_fraction: most,
-                    ..Budget::default()
-                });
-                judgement
-                    .map_err(|fault| EarlyEnd::Failed(format!("{what}: {fault}\n{stack:?}")))?;
-            }
-        }
-    }
-    Ok(())
-}
-
-fn scenes_by_axes(context: &mut CaseContext) -> Result<(), EarlyEnd> {
-    let stack = stack(&["lambert"]);
-    // Scenes without triangles far below a pixel, which inexact options may draw in any way.
-    let queries = [
-        "teapot?tess=8",
-        "sphere?triangles=5000",
-        "cube-wall",
-        "sizes",
-        "near",
-        "stack",
-        "panes",
-    ];
-    let scenes = pictures(context, &queries, [160, 120])?;
-    let mut exact = Vec::new();
-    for (query, scene, view) in &scenes {
-        exact.push(
-            context
-                .captured(scene, view, &stack, &AccuracyRequest::default(), query)?
-                .frame
-                .triangle_id,
-        );
-    }
-    for axis in AXES {
-        for index in 0..axis.words.len() {
-            let mut pins = PinnedOptions::default();
-            pins.set(axis, Some(index));
-            let accuracy = AccuracyRequest {
-                pins,
-                ..AccuracyRequest::default()
-            };
-            for ((query, scene, view), triangle_ids) in scenes.iter().zip(&exact) {
-                let what = format!("{query} on {}", pins.words());
-                context.step(scene, view, &what)?;
-                context.renderer.set_scene(scene).block_on()?;
-                match context.renderer.capture(view, &stack, &accuracy).block_on() {
-                    Ok(capture) => {
-                        let shown = capture.shown.as_ref().unwrap_or(&capture.frame);
-                        let different =
-                            compare::triangle_ids(&shown.triangle_id, triangle_ids).different;
-                        // What would be clipped may be all of a scene, a race may lose anything, a
-                        // box that reaches far beyond the picture has steps
-                        // of pixels, and other pixels have other triangle ids.
-                        let may_be_any = axis.name == "clipping"
-                            || pins.option() == Some(Visibility::Race)
-                            || pins
-                                .option::<PositionFormat>()
-                                .is_some_and(|option| option.packed_bits().is_some())
-                            || pins
-                                .option::<RenderScale>()
-                                .is_some_and(|option| option != RenderScale::Full);
-                        check!(
-                            may_be_any || different * 10 <= view.pixels() as u64,
-                            "{what}: {different} triangle ids differ"
-                        );
-                    }
-                    Err(error) => {
-                        check!(
-                            error.is_unsupported() && !matches!(error, RenderError::Lost),
-                            "{what}: {error}"
-                        );
-                    }
-                }
-                let error = context.renderer.gpu().take_error();
-                check!(error.is_none(), "{what}: the device reports {error:?}");
-            }
-        }
-    }
-    Ok(())
-}
-
 #[cfg(test)]
 mod tests {
     use std::collections::BTreeSet;
 
     use super::*;
-    use crate::scene::builtin::BUILTINS;
+    use crate::effects::EFFECTS;
 
     #[test]
-    fn every_builtin_scene_and_every_effect_but_the_trail_is_in_the_matrix() {
-        let scenes: BTreeSet<&str> = all_scenes()
-            .into_iter()
-            .filter_map(|query| query.split('?').next())
-            .collect();
-        assert_eq!(
-            scenes,
-            BUILTINS.iter().map(|builtin| builtin.name).collect()
-        );
+    fn every_effect_but_the_trail_is_in_the_matrix() {
         let factors = factors(&Caps::ALL);
         let levels = factors.iter().flatten().filter_map(|level| {
             if let Level::Effects(names) = level {

@@ -13,7 +13,6 @@ mod context;
 mod coverage;
 mod covering;
 pub mod culling;
-mod depth;
 mod drawing;
 mod effects;
 mod hardware;
@@ -35,7 +34,7 @@ pub mod written;
 
 pub use case::{Case, Expectation, Outcome, Report};
 pub use checks::EarlyEnd;
-pub use context::{CaseContext, Counts};
+pub use context::CaseContext;
 pub use drawing::{
     WorkDistribution, captured, exactness, judged, options, pinned, quick_option, stack, tunings,
 };
@@ -48,59 +47,10 @@ pub fn cases() -> Vec<&'static Case> {
     cases
 }
 
-/// The cases whose number is one of the parts of `filter`, which commas separate, or whose name
-/// contains one; all cases without a filter.
+/// The cases whose name contains one of the parts of `filter`, which commas separate; all cases
+/// without a filter.
 pub fn chosen(filter: Option<&str>) -> Vec<&'static Case> {
-    let filter = filter.unwrap_or_default().to_lowercase();
-    let is_meant = |case: &&Case| {
-        let mut parts = filter
-            .split(',')
-            .map(str::trim)
-            .filter(|part| !part.is_empty() || filter.trim().is_empty());
-        parts.any(|part| match part.parse::<u32>() {
-            Ok(number) => case.number == number,
-            Err(_) => case.name.contains(part),
-        })
-    };
+    let parts: Vec<&str> = filter.unwrap_or_default().split(',').collect();
+    let is_meant = |case: &&Case| parts.iter().any(|part| case.name.contains(part.trim()));
     cases().into_iter().filter(is_meant).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use std::collections::BTreeSet;
-
-    use super::*;
-
-    #[test]
-    fn names_are_unique_and_plain() {
-        let cases = cases();
-        let names: BTreeSet<_> = cases.iter().map(|case| case.name).collect();
-        assert_eq!(names.len(), cases.len());
-        let is_plain = |name: &str| {
-            name.chars()
-                .all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-')
-        };
-        assert!(names.iter().all(|name| is_plain(name)), "{names:?}");
-    }
-
-    #[test]
-    fn a_filter_is_a_number_or_a_part_of_a_name() {
-        assert!(chosen(Some("9")).iter().all(|case| case.number == 9));
-        assert!(!chosen(Some("9")).is_empty() && chosen(Some("99")).is_empty());
-        assert!(
-            chosen(Some(" Near "))
-                .iter()
-                .any(|case| case.name.contains("near"))
-        );
-        let both = chosen(Some("near-, 9,"));
-        assert_eq!(
-            both.len(),
-            chosen(Some("near-")).len() + chosen(Some("9")).len()
-        );
-        assert!(
-            both.iter()
-                .all(|case| case.number == 9 || case.name.contains("near-"))
-        );
-        assert_eq!(chosen(None).len(), cases().len());
-    }
 }

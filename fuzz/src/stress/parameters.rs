@@ -84,7 +84,7 @@ fn set(stack: &mut Stack, effect: &Arc<Effect>, field: &Field, end: usize) -> Re
 }
 
 /// Draws and judges. Color discontinuities may be anywhere.
-fn judged(
+fn judge_stack(
     context: &mut CaseContext,
     stack: &Stack,
     turn: usize,
@@ -186,7 +186,7 @@ fn parameters_at_range_ends(context: &mut CaseContext) -> Result<(), EarlyEnd> {
                     field.name,
                     ends(field)[end]
                 );
-                judged(context, &stack, turn, &what)?;
+                judge_stack(context, &stack, turn, &what)?;
             }
             let mut stack = Stack::default();
             enable(&mut stack, effect);
@@ -194,7 +194,7 @@ fn parameters_at_range_ends(context: &mut CaseContext) -> Result<(), EarlyEnd> {
                 .fields
                 .iter()
                 .try_for_each(|field| set(&mut stack, effect, field, end))?;
-            judged(
+            judge_stack(
                 context,
                 &stack,
                 turn,
@@ -272,7 +272,7 @@ fn all_effects_at_range_ends(context: &mut CaseContext) -> Result<(), EarlyEnd> 
                 .collect();
             let at = ["at their defaults", "at their minimum", "at their maximum"]
                 [end.map_or(0, |end| end + 1)];
-            judged(
+            judge_stack(
                 context,
                 &stack,
                 choice,

@@ -1,7 +1,7 @@
 //! Scenes from explicit vertices, and views with known coordinates, for the cases and for tests of
 //! the renderer.
 
-use std::sync::Arc;
+use std::{panic, sync::Arc};
 
 use glam::{DMat4, DVec3, DVec4};
 
@@ -221,9 +221,6 @@ pub fn camera_view(scene: &Scene, camera: &Camera, [width, height]: [u32; 2]) ->
 }
 
 /// The coverage that the oracle computes without any data of an adapter.
-///
-/// # Errors
-/// If the scene exceeds the arithmetic ([`DrawError`]).
 pub fn reference_coverage(scene: &Scene, view: &View) -> Result<oracle::Coverage, DrawError> {
     let draws = draws(scene, view)?;
     let stack = Stack::default();
@@ -259,7 +256,19 @@ pub fn quad(corners: [[f64; 2]; 4], w: [f64; 4], winding: Winding) -> Vec<[f32; 
     order.map(position).to_vec()
 }
 
-/// A small random number generator with the same sequence on every machine.
+/// Calls `check` with `count` generators. A failure names its `RASTERLAB_SEED`.
+pub fn for_seeds(count: u32, check: impl Fn(&mut Rng)) {
+    let first = std::env::var("RASTERLAB_SEED").map_or(0, |seed| seed.parse().expect("a number"));
+    for seed in first..first + count {
+        let case = panic::AssertUnwindSafe(|| check(&mut Rng(seed)));
+        if let Err(why) = panic::catch_unwind(case) {
+            eprintln!("RASTERLAB_SEED={seed}");
+            panic::resume_unwind(why);
+        }
+    }
+}
+
+/// Random numbers, the same on every machine.
 pub struct Rng(pub u32);
 
 impl Rng {
@@ -274,12 +283,11 @@ impl Rng {
         low + ((u64::from(self.next_u32()) * u64::from(high.abs_diff(low))) >> 32) as i32
     }
 
-    /// From `low` up to but without `high`.
+    /// The same of real numbers.
     pub fn real(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * f64::from(self.next_u32()) / 4_294_967_296.0
     }
 
-    /// Shuffles a list.
     pub fn shuffle<T>(&mut self, list: &mut [T]) {
         for last in (1..list.len()).rev() {
             list.swap(last, self.between(0, last as i32 + 1) as usize);

@@ -1,8 +1,8 @@
 //! The table of stress cases, except [`super::strict`], which runs the others again.
 
 use super::{
-    case::Case, clipping, coverage, culling, depth, effects, hardware, matrix, occlusion,
-    parameters, picture_sizes, published, queues, skins, time, values, written,
+    case::Case, clipping, coverage, culling, effects, hardware, matrix, occlusion, parameters,
+    picture_sizes, published, queues, skins, time, values, written,
 };
 
 /// All cases by kind, except those that run other cases.
@@ -11,7 +11,6 @@ const CASES: &[&[Case]] = &[
     coverage::CASES,
     clipping::CASES,
     values::CASES,
-    depth::CASES,
     queues::CASES,
     picture_sizes::CASES,
     time::CASES,

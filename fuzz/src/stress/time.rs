@@ -1,27 +1,14 @@
-//! Repetition: the same picture many times, the same triangles in another order, and a clock that
-//! has run for a day.
+//! Repetition: the same picture many times, and the same triangles in another order.
 
 use std::sync::Arc;
 
 use super::{
     case::{Case, Expectation},
-    checks::{EarlyEnd, check, equal, same},
+    checks::{EarlyEnd, check, same},
     context::CaseContext,
     drawing::{WorkDistribution, pinned, stack},
 };
-use crate::{
-    accuracy::{ParticleStorage, PinnedOptions},
-    effects::{Effect, EnabledEffect, Stack},
-    frame::NO_TRIANGLE,
-    gpu::Capture,
-    measure::compare,
-    plan::AccuracyRequest,
-    preset::{
-        Animation, Clock, Preset,
-        animation::{Easing, Keyframe, Track},
-    },
-    scene::Scene,
-};
+use crate::{frame::NO_TRIANGLE, gpu::Capture, scene::Scene};
 
 pub const CASES: &[Case] = &[
     Case {
@@ -37,20 +24,6 @@ pub const CASES: &[Case] = &[
         about: "triangles in another order, with ids mapped back: the same picture bit by bit",
         expectation: Expectation::Exact,
         run: shuffled_triangles,
-    },
-    Case {
-        number: 29,
-        name: "after-a-day",
-        about: "spin, keyframes and a looping clock after 24 hours",
-        expectation: Expectation::Bounded("the phase differs by at most a millionth of a period"),
-        run: after_a_day,
-    },
-    Case {
-        number: 35,
-        name: "played-particles",
-        about: "particles of one frame after another, and after jumps to and fro, from the states that the frame before left",
-        expectation: Expectation::Exact,
-        run: played_particles,
     },
 ];
 
@@ -146,144 +119,4 @@ fn shuffled_triangles(context: &mut CaseContext) -> Result<(), EarlyEnd> {
         }
     }
     Ok(())
-}
-
-fn played_particles(context: &mut CaseContext) -> Result<(), EarlyEnd> {
-    let chamber = context.scene("chamber")?;
-    // Short lives, so that some end in every frame.
-    let mut preset = Preset {
-        stack: stack(&["particles"]),
-        ..Preset::default()
-    };
-    let particles =
-        Effect::find("particles").ok_or_else(|| EarlyEnd::Failed("no effect particles".into()))?;
-    for (name, value) in [("count", 300.0), ("lifetime_s", 0.25)] {
-        let field = particles
-            .field(name)
-            .ok_or_else(|| EarlyEnd::Failed(format!("no field particles.{name}")))?;
-        field
-            .set(&mut preset.stack.enable(particles).words, &[value])
-            .map_err(|error| EarlyEnd::Failed(error.to_string()))?;
-    }
-    let option = context.quick_option();
-    for storage in [ParticleStorage::Float32, ParticleStorage::Half16] {
-        let pins = PinnedOptions::of(option).with(storage);
-        let accuracy = AccuracyRequest {
-            pins,
-            ..AccuracyRequest::default()
-        };
-        let frames = [0, 1, 2, 3, 8, 9, 4, 5, 30, 31, 32, 0, 1];
-        for frame in frames {
-            preset.clock.time_s = f64::from(frame) / 60.0 + 1e-3;
-            let view = preset.view(&chamber, [64, 48]);
-            context.exact_next(
-                &chamber,
-                &view,
-                &preset.evaluated_stack(),
-                &accuracy,
-                &format!("frame {frame}, {}", pins.words()),
-            )?;
-        }
-    }
-    Ok(())
-}
-
-/// Seconds in a day.
-const DAY_S: f64 = 86_400.0;
-
-/// Largest error of a phase, in periods.
-const PHASE: f64 = 1e-6;
-
-fn after_a_day(context: &mut CaseContext) -> Result<(), EarlyEnd> {
-    let knot = context.scene("knot?tess=4")?;
-    let facet = Effect::find("facet").ok_or_else(|| EarlyEnd::Failed("no effect facet".into()))?;
-    let amount = facet
-        .field("amount")
-        .ok_or_else(|| EarlyEnd::Failed("no field facet.amount".into()))?;
-    let key = |time_s: f64, value: f64| Keyframe {
-        time_s,
-        value: vec![value],
-        easing: Easing::Linear,
-    };
-    let sentence =
-        |error: crate::preset::animation::KeyframeError| EarlyEnd::Failed(error.to_string());
-    // A ramp of a second that begins a day after the start, and spin of a quarter turn a second.
-    let preset_at = |late_s: f64| -> Result<Preset, EarlyEnd> {
-        let mut animation = Animation::default();
-        animation.put(
-            Track::new(
-                facet,
-                amount,
-                vec![key(late_s, 0.0), key(late_s + 1.0, 1.0)],
-            )
-            .map_err(sentence)?,
-        );
-        Ok(Preset {
-            spin_deg_per_s: 90.0,
-            stack: Stack(vec![EnabledEffect::new(facet)]),
-            animation,
-            clock: Clock {
-                time_s: late_s + 0.37,
-                ..Clock::default()
-            },
-            ..Preset::default()
-        })
-    };
-    let (fresh, late) = (preset_at(0.0)?, preset_at(DAY_S)?);
-    let angle = |preset: &Preset| {
-        let x = preset
-            .view(&knot, [8, 8])
-            .scene_state
-            .world_from_scene
-            .x_axis;
-        libm::atan2(-x.z, x.x) / std::f64::consts::TAU
-    };
-    let off = (angle(&late) - angle(&fresh)).abs();
-    check!(off <= PHASE, "the spin is {off:e} of a turn off");
-    let value = |preset: &Preset| amount.get(&preset.evaluated_stack().0[0].words)[0];
-    let ramp = (value(&late) - value(&fresh)).abs();
-    check!(
-        ramp <= PHASE && (value(&fresh) - 0.37).abs() <= PHASE,
-        "the keyed value is {ramp:e} of its way off"
-    );
-
-    // A looping clock, frame by frame for a day at 60 frames a second.
-    let clock = Clock {
-        range_s: [0.0, 4.0],
-        ..Clock::default()
-    };
-    let (mut time_s, frames) = (0.0, 60 * DAY_S as u32);
-    for _ in 0..frames {
-        time_s = clock.after(time_s, 1.0 / 60.0).0;
-    }
-    // A day is a whole number of loops.
-    let phase = (time_s / 4.0).min(1.0 - time_s / 4.0).abs();
-    check!(
-        phase <= PHASE,
-        "after {frames} frames the clock is {phase:e} of a round off"
-    );
-
-    let mut drawn = Vec::new();
-    for (what, preset) in [("at the start", &fresh), ("a day later", &late)] {
-        let view = preset.view(&knot, [96, 72]);
-        drawn.push(context.exact_on_all_with(&knot, &view, &preset.evaluated_stack(), what)?);
-    }
-    let changed =
-        compare::triangle_ids(&drawn[1].frame.triangle_id, &drawn[0].frame.triangle_id).different;
-    let vertices = drawn[0]
-        .geometry
-        .vertices
-        .iter()
-        .zip(&drawn[1].geometry.vertices);
-    let moved = vertices
-        .map(|(a, b)| a.x.abs_diff(b.x).max(a.y.abs_diff(b.y)))
-        .max()
-        .unwrap_or(0);
-    check!(moved <= 1, "a vertex is {moved} units of 1/256 px off");
-    context.note(format!("spin off by {off:.1e} of a turn, clock by {phase:.1e} of a round, {changed} pixels of another triangle id"));
-    equal(
-        &drawn[0].frame.counters,
-        &drawn[1].frame.counters,
-        "counters a day later",
-    )
 }

@@ -1,4 +1,4 @@
-//! Values: non-finite numbers, triangles without area, and extreme scales.
+//! Values: non-finite numbers, triangles without area, and mirrored transforms.
 
 use std::sync::Arc;
 
@@ -14,12 +14,7 @@ use super::{
     },
 };
 use crate::{
-    accuracy::{PinnedOptions, PositionFormat},
-    effects::Stack,
     frame::NO_TRIANGLE,
-    gpu::Capture,
-    oracle,
-    plan::AccuracyRequest,
     scene::{
         Scene,
         camera::{Camera, Projection},
@@ -40,13 +35,6 @@ pub const CASES: &[Case] = &[
         about: "NaN, infinities and extremes in normals and colors: finite values replace them",
         expectation: Expectation::Exact,
         run: non_finite_attributes,
-    },
-    Case {
-        number: 14,
-        name: "relative-positions",
-        about: "meshes whose vertices lie 10^4 to 10^8 units from the origin, with positions relative to the eye: no error from the offset",
-        expectation: Expectation::Exact,
-        run: relative_positions,
     },
     Case {
         number: 17,
@@ -211,89 +199,6 @@ fn non_finite_attributes(context: &mut CaseContext) -> Result<(), EarlyEnd> {
                 capture.frame.covered()
             );
         }
-    }
-    Ok(())
-}
-
-fn relative_positions(context: &mut CaseContext) -> Result<(), EarlyEnd> {
-    let knot = context.scene("knot?tess=4")?;
-    let mesh = &knot.primitives[0];
-    let indices: Vec<u32> = (0..mesh.triangle_count())
-        .flat_map(|triangle| mesh.corners(&knot, triangle))
-        .collect();
-    let relative = AccuracyRequest {
-        pins: PinnedOptions::of(PositionFormat::Relative).with(context.quick_option()),
-        ..AccuracyRequest::default()
-    };
-    let stored = AccuracyRequest {
-        pins: PinnedOptions::of(PositionFormat::Stored).with(context.quick_option()),
-        ..AccuracyRequest::default()
-    };
-    for offset in [1e4, 1e5, 1e6, 1e7, 1e8] {
-        // The distance is 100,000 times the size, which leaves about 7 bits of a float for the
-        // shape.
-        let (scale, at) = (1e-5 * offset, DVec3::new(offset, -offset, 0.5 * offset));
-        let far = |vertex| {
-            (DVec3::from_array(mesh.position(&knot, vertex).map(f64::from)) * scale + at)
-                .as_vec3()
-                .to_array()
-        };
-        let positions = (0..mesh.vertex_count()).map(far).collect();
-        let scene = scene_of_meshes(&[SimpleMesh {
-            positions,
-            indices: indices.clone(),
-            ..SimpleMesh::default()
-        }]);
-        let camera = Camera {
-            eye: at + DVec3::new(1.0, 1.0, 4.0) * scale,
-            target: at,
-            near_m: scale.max(1e-6) * 0.1,
-            ..Camera::default()
-        };
-        let view = camera_view(&scene, &camera, [96, 72]);
-        let corners = oracle::project_finest(&scene, &view, &Stack::default())?;
-        let moved = |capture: &Capture| {
-            let twins = capture
-                .geometry
-                .vertices
-                .iter()
-                .zip(&corners.vertices)
-                .filter(|(a, b)| a.flags | b.flags == 0);
-            let fine = f64::from(1 << (corners.subpixel_bits - capture.geometry.subpixel_bits));
-            let units = |a: i32, b: i32| (f64::from(a) - f64::from(b) / fine).abs();
-            twins
-                .map(|(a, b)| units(a.x, b.x).max(units(a.y, b.y)))
-                .fold(0.0, f64::max)
-        };
-        let what = format!("vertices {offset:e} units away");
-        let (capture, _) = context.exact(&scene, &view, &Stack::default(), &relative, &what)?;
-        let off = moved(&capture);
-        check!(
-            off <= 1.0,
-            "{what}: a corner is {off} units of 1/256 px from its correct position"
-        );
-        check!(
-            capture.frame.covered() > 1500,
-            "{what}: {} pixels",
-            capture.frame.covered()
-        );
-        let (capture, _) = context.judged(
-            &scene,
-            &view,
-            &Stack::default(),
-            &stored,
-            &format!("{what}, as they are stored"),
-        )?;
-        let stored_off = moved(&capture);
-        check!(
-            stored_off > 8.0 * off,
-            "{what}: with stored positions corners move by only {stored_off} units"
-        );
-        context.note(format!(
-            "{what}: corners move by up to {:.3} px with stored positions, by {:.4} px with relative ones",
-            stored_off / 256.0,
-            off / 256.0
-        ));
     }
     Ok(())
 }

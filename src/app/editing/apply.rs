@@ -1,11 +1,14 @@
 //! Carries out commands that edit the preset.
 
-use eframe::egui::{self, ViewportCommand};
+use egui::ViewportCommand;
 
 use super::{command::KeyframeEdit, session::UndoState};
-use crate::app::{
-    panels::timeline::Timeline,
-    shell::{command::RowCommand, log::Level, state::State},
+use crate::{
+    accuracy::{Axis, PinnedOptions},
+    app::{
+        App,
+        shell::{command::RowCommand, log::Level, state::State},
+    },
 };
 
 /// Notifies of an error of `change`.
@@ -37,7 +40,7 @@ pub fn set_values(state: &mut State, values: &[(String, String)]) {
 }
 
 /// Goes to a state of the history; `what` names the step if there is none.
-pub fn restore(state: &mut State, to: Option<UndoState>, what: &str) {
+fn restore(state: &mut State, to: Option<UndoState>, what: &str) {
     match to.map(|to| state.session.restore(to)) {
         None => state.notify(Level::Info, format!("Nothing to {what}")),
         Some(Some(name)) => state.notify(Level::Info, format!("Back to {name}")),
@@ -45,27 +48,92 @@ pub fn restore(state: &mut State, to: Option<UndoState>, what: &str) {
     }
 }
 
-pub fn keyframe(state: &mut State, timeline: &mut Timeline, edit: KeyframeEdit) {
-    match state.session.edit_keyframe(edit) {
-        Ok(Some(key)) => timeline.selected = Some(key),
+/// Changes keyframes, and selects the one that is changed.
+pub fn keyframe(app: &mut App, edit: KeyframeEdit) {
+    match app.state.session.edit_keyframe(edit) {
+        Ok(Some(key)) => app.panels.timeline.selected = Some(key),
         Ok(None) => {}
-        Err(error) => state.notify(Level::Error, error),
+        Err(error) => app.notify(Level::Error, error),
     }
 }
 
-pub fn row(ctx: &egui::Context, state: &mut State, command: RowCommand) {
+/// Removes the keyframe that is selected on the timeline.
+pub fn remove_selected_key(app: &mut App) {
+    match app.panels.timeline.selected.take() {
+        Some(key) => keyframe(app, KeyframeEdit::Remove(key)),
+        None => app.notify(
+            Level::Info,
+            "No key is selected. Click one on the timeline first.",
+        ),
+    }
+}
+
+/// Does what a row of the inspector does besides changing its value.
+pub fn row(app: &mut App, command: RowCommand) {
+    let state = &mut app.state;
     match command {
         RowCommand::Reset(path) => report(state, |state| state.session.reset(&path)),
         RowCommand::ResetGroup(group) => report(state, |state| state.session.reset_group(&group)),
         RowCommand::ToggleKey(path) => report(state, |state| state.session.toggle_key(&path)),
         RowCommand::Copy(text) => {
-            ctx.copy_text(text.clone());
+            app.ctx.copy_text(text.clone());
             state.notify(Level::Info, format!("Copied {text}"));
         }
         RowCommand::Paste(path) => {
             state.clipboard.paste_into = Some(path);
-            ctx.send_viewport_cmd(ViewportCommand::RequestPaste);
+            app.ctx.send_viewport_cmd(ViewportCommand::RequestPaste);
         }
+    }
+}
+
+/// Takes the last step back.
+pub fn undo(state: &mut State) {
+    state.observe(false);
+    let before = state.history.undo();
+    restore(state, before, "undo");
+}
+
+/// Does the step again that was taken back last.
+pub fn redo(state: &mut State) {
+    state.observe(false);
+    let after = state.history.redo();
+    restore(state, after, "redo");
+}
+
+/// Gives every parameter of the enabled effects that is not locked a random value.
+pub fn randomize(state: &mut State) {
+    let text = match state.session.randomize() {
+        Some(seed) => format!("Randomized with seed {seed}"),
+        None => "No effect is enabled, so there is nothing to randomize".into(),
+    };
+    state.notify(Level::Info, text);
+}
+
+/// Pins the options of these axes.
+pub fn pin_options(state: &mut State, pins: &PinnedOptions, axes: &[&'static Axis]) {
+    let mut accuracy = state.session.preset().accuracy;
+    axes.iter()
+        .for_each(|axis| accuracy.pins.set(axis, pins.get(axis)));
+    state.session.preset_mut().accuracy = accuracy;
+    state.observe(false);
+    state.history.close();
+    let words = pins.words();
+    let text = match words.is_empty() {
+        true => "The planner chooses again".into(),
+        false => format!("Switched to {words}"),
+    };
+    state.notify(Level::Info, text);
+}
+
+/// Plays or pauses; says why if nothing moves.
+pub fn play_or_pause(state: &mut State) {
+    let session = &mut state.session;
+    session.playback.toggle(&session.preset_file.preset.clock);
+    if session.playback.playing && !session.preset().is_moving() {
+        state.notify(
+            Level::Info,
+            "Nothing in this preset moves. Set keys for a value at two times, or give the scene a spin.",
+        );
     }
 }
 

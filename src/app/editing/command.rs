@@ -1,4 +1,4 @@
-//! Commands that change keyframes and the time that is shown.
+//! Changes of keyframes.
 
 use super::key_id::KeyId;
 use crate::preset::{Preset, animation::Easing};
@@ -10,20 +10,4 @@ pub enum KeyframeEdit {
     Remove(KeyId),
     /// The preset begins its clock as this one and ends it as it is.
     From(Box<Preset>),
-}
-
-/// A change of the time that is shown. Seconds.
-pub enum TimeCommand {
-    Show(f64),
-    /// Goes to `clock.time_s`.
-    ShowOwn,
-    /// Writes the shown time to `clock.time_s`.
-    Keep,
-    PlayOrPause,
-    Pause,
-    /// Frames to step by, negative for back.
-    Step(f64),
-    Rewind,
-    /// True while the pointer holds the playhead: playing does not advance the time.
-    Hold(bool),
 }

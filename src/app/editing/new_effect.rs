@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 
 use crate::{
     app::{
+        App,
         files::{command::Origin, reload::add_effect_file},
-        panels::Panels,
         shell::{log::Level, state::State},
     },
     effect_files::{duplicate, template},
@@ -44,22 +44,17 @@ fn write(path: &Path, text: &str) -> Result<(), String> {
 }
 
 /// Enables an effect that was written, in place of the one that it duplicates.
-pub fn written(
-    state: &mut State,
-    panels: &mut Panels,
-    path: PathBuf,
-    origin: Origin,
-    outcome: Result<(), String>,
-) {
-    state.files.live.writing = state.files.live.writing.saturating_sub(1);
+pub fn written(app: &mut App, path: PathBuf, origin: Origin, outcome: Result<(), String>) {
+    app.state.files.live.writing = app.state.files.live.writing.saturating_sub(1);
     if let Err(error) = outcome {
-        return state.notify(Level::Error, error);
+        return app.notify(Level::Error, error);
     }
-    add_effect_file(state, panels, &path);
-    if let (Some(waiting), Origin::Duplicate(effect)) = (&mut state.files.live.enable, origin) {
+    add_effect_file(app, &path);
+    app.state.jobs.read_code(path.clone());
+    if let (Some(waiting), Origin::Duplicate(effect)) = (&mut app.state.files.live.enable, origin) {
         waiting.replaces = Some(effect);
     }
-    state.notify(
+    app.notify(
         Level::Info,
         format!(
             "Wrote {}. The picture follows its text here, and its file in any editor.",

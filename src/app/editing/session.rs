@@ -7,9 +7,7 @@ use std::{
     sync::Arc,
 };
 
-use super::{
-    command::TimeCommand, particle_trail::Trail, playback::Playback, randomize::Randomizer,
-};
+use super::{particle_trail::Trail, playback::Playback, randomize::Randomizer};
 use crate::{
     app::files::scene_loader::SceneLoader,
     effect_files::Catalog,
@@ -367,33 +365,36 @@ impl Session {
         preset.view(scene, size)
     }
 
-    /// Changes the time that is shown. Returns a hint if the preset does not move.
-    pub fn change_time(&mut self, command: TimeCommand) -> Option<&'static str> {
+    /// Hides an effect (true) or shows it again: a viewing aid, which is not saved.
+    pub fn mute(&mut self, name: String, is_muted: bool) {
+        match is_muted {
+            true => self.muted.insert(name),
+            false => self.muted.remove(&name),
+        };
+    }
+
+    /// Pauses at the preset's own time, `clock.time_s`.
+    pub fn show_own_time(&mut self) {
+        self.playback.playing = false;
+        self.playback.show_own();
+    }
+
+    /// Writes the shown time to `clock.time_s`.
+    pub fn keep_shown_time(&mut self) {
+        self.preset_mut().clock.time_s = self.shown_time_s();
+        self.playback.show_own();
+    }
+
+    /// Steps by so many frames, negative for back.
+    pub fn step_time(&mut self, frames: f64) {
         let clock = self.preset().clock;
-        match command {
-            TimeCommand::Show(time_s) => self.playback.show(time_s),
-            TimeCommand::ShowOwn => {
-                self.playback.playing = false;
-                self.playback.show_own();
-            }
-            TimeCommand::Keep => {
-                self.preset_mut().clock.time_s = self.playback.shown_time_s(&clock);
-                self.playback.show_own();
-            }
-            TimeCommand::PlayOrPause => {
-                self.playback.toggle(&clock);
-                if self.playback.playing && !self.preset().is_moving() {
-                    return Some(
-                        "Nothing in this preset moves. Set keys for a value at two times, or give the scene a spin.",
-                    );
-                }
-            }
-            TimeCommand::Pause => self.playback.pause(),
-            TimeCommand::Step(frames) => self.playback.step(&clock, frames),
-            TimeCommand::Rewind => self.playback.show(clock.range_s[0]),
-            TimeCommand::Hold(is_held) => self.playback.is_held = is_held,
-        }
-        None
+        self.playback.step(&clock, frames);
+    }
+
+    /// Goes to the start.
+    pub fn rewind(&mut self) {
+        let [start_s, _] = self.preset().clock.range_s;
+        self.playback.show(start_s);
     }
 
     /// Advances the time by a frame that took `passed_s` seconds.

@@ -5,17 +5,16 @@ use std::{
     sync::Arc,
 };
 
-use eframe::egui::{self, ViewportCommand};
+use egui::ViewportCommand;
 
 use super::{
-    command::{CodeUse, FileCommand, Manner, Purpose, Side},
+    command::{CodeUse, Manner, Purpose, Side},
     open, reload,
 };
 use crate::{
     app::{
-        editing::new_effect,
+        App,
         jobs::film,
-        panels::Panels,
         picture::screen::Inputs,
         shell::{log::Level, state::State},
     },
@@ -24,136 +23,106 @@ use crate::{
     preset_file::{self, Existing, PresetFile},
 };
 
-pub fn file(ctx: &egui::Context, state: &mut State, panels: &mut Panels, command: FileCommand) {
-    match command {
-        #[cfg(target_arch = "wasm32")]
-        FileCommand::Ask(Purpose::Open) => state.jobs.ask_files(),
-        FileCommand::Ask(purpose) => {
-            let output = state.session.preset().output.size;
-            let size = state
-                .picture
-                .screen
-                .requested()
-                .map_or(output, |inputs| [inputs.view.width, inputs.view.height]);
-            panels.dialogs.ask_path(
-                purpose,
-                &state.session,
-                state.files.folders.presets.as_deref(),
-                size,
-            );
+/// Shows the dialog for this purpose.
+pub fn ask_path(app: &mut App, purpose: Purpose) {
+    #[cfg(target_arch = "wasm32")]
+    if purpose == Purpose::Open {
+        return app.state.jobs.ask_files();
+    }
+    let state = &app.state;
+    let requested = state.picture.screen.requested();
+    let size = requested.map_or(state.session.preset().output.size, |inputs| {
+        [inputs.view.width, inputs.view.height]
+    });
+    let presets = state.files.folders.presets.as_deref();
+    app.panels
+        .dialogs
+        .ask_path(purpose, &state.session, presets, size);
+}
+
+/// Opens a preset, model or picture by path, id or `builtin:QUERY`, or enables the effect of a file.
+pub fn open_named(app: &mut App, what: &str) {
+    let path = Path::new(what);
+    if path
+        .extension()
+        .is_some_and(|extension| extension.eq_ignore_ascii_case("wgsl"))
+    {
+        return reload::add_effect_file(app, path);
+    }
+    match preset_file::open(what, &app.state.files.folders) {
+        Ok(opened) => {
+            let manner = open::manner_of(what, &opened);
+            open_preset(app, opened, manner);
         }
-        FileCommand::Browse(purpose, path) => state.jobs.ask_path(purpose, &path),
-        FileCommand::List(folder) => state.jobs.list_folder(folder),
-        FileCommand::Restore(restored) => open::restore(state, panels, *restored),
-        FileCommand::ForgetRecents => state.settings.recents.clear(),
-        FileCommand::Open(what)
-            if Path::new(&what)
-                .extension()
-                .is_some_and(|extension| extension.eq_ignore_ascii_case("wgsl")) =>
-        {
-            reload::add_effect_file(state, panels, Path::new(&what));
-        }
-        FileCommand::Open(what) => match preset_file::open(&what, &state.files.folders) {
-            Ok(opened) => {
-                let manner = open::manner_of(&what, &opened);
-                open_and_notify(state, panels, opened, manner);
-            }
-            Err(error) => state.notify(Level::Error, error.to_string()),
-        },
-        FileCommand::OpenPreset(opened, manner) => open_and_notify(state, panels, *opened, manner),
-        FileCommand::OpenWithScene => match state.session.look_file().cloned() {
-            Some(look) => open_and_notify(state, panels, look, Manner::WithScene),
-            None => state.notify(Level::Info, "This preset shows its own scene already"),
-        },
-        FileCommand::OpenNeighbor(step) => match panels
-            .browser
-            .neighbor(state.session.preset_file.look_id(), step)
-            .cloned()
-        {
-            Some(neighbor) => open_and_notify(state, panels, neighbor, Manner::Look),
-            None => state.notify(Level::Info, "There are no presets to open"),
-        },
-        FileCommand::Save => {
-            let open = &state.session.preset_file;
-            match open.path.clone().filter(|_| !open.read_only) {
-                Some(path) => save_to(state, panels, path, None),
-                None => file(ctx, state, panels, FileCommand::Ask(Purpose::SaveAs)),
-            }
-        }
-        FileCommand::SaveTo { path, name } => save_to(state, panels, path, name),
-        FileCommand::Write {
-            path,
-            name,
-            drops_muted,
-        } => {
-            if drops_muted {
-                state.session.drop_muted();
-            }
-            write(state, panels, &path, name);
-        }
-        FileCommand::Export { path, size } => export(state, panels, path, size),
-        #[cfg(target_arch = "wasm32")]
-        FileCommand::ExportAll => super::take_along::export(state),
-        #[cfg(not(target_arch = "wasm32"))]
-        FileCommand::ExportAll => {}
-        FileCommand::AskNewEffect(duplicated) => panels
-            .dialogs
-            .ask_new_effect(duplicated, &state.session.preset_file.effects),
-        FileCommand::NewEffect { name, origin } => new_effect::create(state, &name, origin),
-        FileCommand::Edit(path) => state.jobs.open_editor(path),
-        FileCommand::ShowCode(path) => state.jobs.read_code(path),
-        FileCommand::TryCode { path, text } => state.jobs.try_code(path, text),
-        FileCommand::SaveCode { path, text } => state.jobs.save_code(path, text),
-        FileCommand::Resolve {
-            theirs,
-            side,
-            saving,
-        } => resolve(state, panels, theirs, side, saving),
-        FileCommand::UseCode {
-            preset_file,
-            then,
-            runs,
-        } => use_code(state, panels, *preset_file, then, runs),
-        FileCommand::UseOutside {
-            preset_file,
-            manner,
-            said,
-            opens_model: true,
-        } => {
-            if let Some(model) = &preset_file.outside_model {
-                state.files.trust.allow_model(model.clone());
-            }
-            request_open(state, panels, *preset_file, manner, said);
-        }
-        FileCommand::UseOutside {
-            preset_file, said, ..
-        } => request_allowed(state, panels, *preset_file, Manner::Look, said),
-        FileCommand::Quit { keeps_edits } => {
-            (state.closing.may_quit, state.closing.keeps_edits) = (true, keeps_edits);
-            ctx.send_viewport_cmd(ViewportCommand::Close);
-        }
+        Err(error) => app.notify(Level::Error, error.to_string()),
     }
 }
 
-fn open_and_notify(state: &mut State, panels: &mut Panels, opened: PresetFile, manner: Manner) {
+/// Opens the preset whose look is shown on the user's own scene, with its scene.
+pub fn open_with_scene(app: &mut App) {
+    match app.state.session.look_file().cloned() {
+        Some(look) => open_preset(app, look, Manner::WithScene),
+        None => app.notify(Level::Info, "This preset shows its own scene already"),
+    }
+}
+
+/// Opens the preset this many entries further in the gallery, wrapping round.
+pub fn open_neighbor(app: &mut App, step: isize) {
+    let id = app.state.session.preset_file.look_id();
+    match app.panels.browser.neighbor(id, step).cloned() {
+        Some(neighbor) => open_preset(app, neighbor, Manner::Look),
+        None => app.notify(Level::Info, "There are no presets to open"),
+    }
+}
+
+/// Saves to the preset's own file, or asks for one.
+pub fn save(app: &mut App) {
+    let open = &app.state.session.preset_file;
+    match open.path.clone().filter(|_| !open.read_only) {
+        Some(path) => save_to(app, path, None),
+        None => ask_path(app, Purpose::SaveAs),
+    }
+}
+
+/// Goes on with a preset that names a model outside of its folder, now that the user has decided
+/// whether that is opened, or only the look is used; `said` is said of it.
+pub fn use_outside(
+    app: &mut App,
+    preset_file: PresetFile,
+    manner: Manner,
+    said: String,
+    opens_model: bool,
+) {
+    if !opens_model {
+        return request_allowed(app, preset_file, Manner::Look, said);
+    }
+    if let Some(model) = &preset_file.outside_model {
+        app.state.files.trust.allow_model(model.clone());
+    }
+    request_open(app, preset_file, manner, said);
+}
+
+/// Closes the window without saving; the edits may come back at the next start.
+pub fn quit(app: &mut App, keeps_edits: bool) {
+    let closing = &mut app.state.closing;
+    (closing.may_quit, closing.keeps_edits) = (true, keeps_edits);
+    app.ctx.send_viewport_cmd(ViewportCommand::Close);
+}
+
+/// Opens a preset and says so.
+pub fn open_preset(app: &mut App, opened: PresetFile, manner: Manner) {
     let said = format!("Opened {}", opened.title());
-    request_open(state, panels, opened, manner, said);
+    request_open(app, opened, manner, said);
 }
 
 /// Opens a preset and says so. Asks first if it names a model outside of its folder which the user
 /// has neither opened nor allowed, and if it brings code that has not been allowed.
-pub fn request_open(
-    state: &mut State,
-    panels: &mut Panels,
-    opened: PresetFile,
-    manner: Manner,
-    said: String,
-) {
+pub fn request_open(app: &mut App, opened: PresetFile, manner: Manner, said: String) {
     match &opened.outside_model {
-        Some(model) if !is_known_model(state, model) => {
-            panels.dialogs.ask_outside(opened.into(), manner, said);
+        Some(model) if !is_known_model(&app.state, model) => {
+            app.panels.dialogs.ask_outside(opened.into(), manner, said);
         }
-        _ => request_allowed(state, panels, opened.with_outside_model(), manner, said),
+        _ => request_allowed(app, opened.with_outside_model(), manner, said),
     }
 }
 
@@ -170,30 +139,25 @@ fn is_known_model(state: &State, model: &Path) -> bool {
 }
 
 /// [`request_open`] for a preset whose model was decided about.
-fn request_allowed(
-    state: &mut State,
-    panels: &mut Panels,
-    opened: PresetFile,
-    manner: Manner,
-    said: String,
-) {
-    if state
+fn request_allowed(app: &mut App, opened: PresetFile, manner: Manner, said: String) {
+    if app
+        .state
         .files
         .trust
-        .allows(&opened, &state.files.folders.effects)
+        .allows(&opened, &app.state.files.folders.effects)
     {
-        open::begin(state, panels, opened, manner, said);
+        open::begin(app, opened, manner, said);
     } else {
-        panels
+        app.panels
             .dialogs
             .ask_code(opened.into(), CodeUse::Open(manner, said));
     }
 }
 
 /// Goes on with a preset that brings effects: with them if they may run, or without.
-fn use_code(state: &mut State, panels: &mut Panels, brings: PresetFile, then: CodeUse, runs: bool) {
+pub fn use_code(app: &mut App, brings: PresetFile, then: CodeUse, runs: bool) {
     let decided = if runs {
-        state.files.trust.allow(&brings);
+        app.state.files.trust.allow(&brings);
         brings
     } else {
         brings.without_brought()
@@ -205,41 +169,37 @@ fn use_code(state: &mut State, panels: &mut Panels, brings: PresetFile, then: Co
             } else {
                 format!("{said} without its effects")
             };
-            open::begin(state, panels, decided, manner, said);
+            open::begin(app, decided, manner, said);
         }
-        CodeUse::Reload => reload::take_preset(state, panels, decided),
+        CodeUse::Reload => reload::take_preset(app, decided),
     }
 }
 
-/// Carries out the decision between the open preset and what another program has made of its file.
-fn resolve(
-    state: &mut State,
-    panels: &mut Panels,
-    theirs: Box<PresetFile>,
-    side: Side,
-    saving: Option<PathBuf>,
-) {
+/// Decides between the open preset and what another program has made of its file. The outcome is
+/// saved to `saving`, if that led to the question.
+pub fn resolve(app: &mut App, theirs: Box<PresetFile>, side: Side, saving: Option<PathBuf>) {
     match side {
-        Side::Theirs => return reload::offer_preset(state, panels, theirs),
-        Side::Mine => state.files.live.overruled = Some(theirs),
-        Side::Both => reload::merge_preset(state, *theirs),
+        Side::Theirs => return reload::offer_preset(app, theirs),
+        Side::Mine => app.state.files.live.overruled = Some(theirs),
+        Side::Both => reload::merge_preset(&mut app.state, *theirs),
     }
     if let Some(path) = saving {
-        write(state, panels, &path, None);
+        write(app, &path, None);
     }
 }
 
 /// May the open preset be written to `path`? A file that another program has changed is asked
 /// about.
-fn may_write(state: &mut State, panels: &mut Panels, path: &Path) -> bool {
-    let open = &state.session.preset_file;
+fn may_write(app: &mut App, path: &Path) -> bool {
+    let open = &app.state.session.preset_file;
     if open.path.as_deref() != Some(path) || open.read_only || !disk::exists(path) {
         return true;
     }
     match preset_file::load_with(path, &open.effects) {
         Ok(there)
             if there.has_text_of(open)
-                || state
+                || app
+                    .state
                     .files
                     .live
                     .overruled
@@ -249,7 +209,7 @@ fn may_write(state: &mut State, panels: &mut Panels, path: &Path) -> bool {
             true
         }
         Ok(there) => {
-            panels
+            app.panels
                 .dialogs
                 .ask_changed(there.into(), Some(path.to_owned()));
             false
@@ -258,18 +218,19 @@ fn may_write(state: &mut State, panels: &mut Panels, path: &Path) -> bool {
             let text = format!(
                 "{error}. Another program has changed the file, so it was not saved; Save as… keeps both"
             );
-            state.notify(Level::Error, text);
+            app.notify(Level::Error, text);
             false
         }
     }
 }
 
-/// Saves there; asks first if effects are muted.
-fn save_to(state: &mut State, panels: &mut Panels, path: PathBuf, name: Option<String>) {
-    if state.session.muted.is_empty() {
-        write(state, panels, &path, name);
+/// Saves there; asks first if effects are muted. A preset that gets another file gets this name, or
+/// that of the file.
+pub fn save_to(app: &mut App, path: PathBuf, name: Option<String>) {
+    if app.state.session.muted.is_empty() {
+        write(app, &path, name);
     } else {
-        panels.dialogs.ask_muted(path, name);
+        app.panels.dialogs.ask_muted(path, name);
     }
 }
 
@@ -291,29 +252,32 @@ pub fn make_folder_of(path: &Path) -> Result<(), String> {
     })
 }
 
-fn write(state: &mut State, panels: &mut Panels, path: &Path, name: Option<String>) {
-    if !may_write(state, panels, path) {
+/// Saves there, with muted effects.
+pub fn write(app: &mut App, path: &Path, name: Option<String>) {
+    if !may_write(app, path) {
         return;
     }
     if let Err(reason) = make_folder_of(path) {
-        return save_failed(state, panels, Purpose::SaveAs, path, reason);
+        return save_failed(app, Purpose::SaveAs, path, reason);
     }
-    let mut saved = state.session.preset_file.clone();
+    let mut saved = app.state.session.preset_file.clone();
     if saved.path.as_deref() != Some(path) {
         saved.make_new(name.as_deref(), path);
     }
     match preset_file::save(&mut saved, path) {
         Ok(()) => {
-            if let Err(error) = keep_effects(state, &saved, path) {
-                state.notify(Level::Warning, error);
+            if let Err(error) = keep_effects(&app.state, &saved, path) {
+                app.notify(Level::Warning, error);
             }
-            state.session.preset_file = saved.clone();
-            state.settings.recents.add_opened(&saved);
-            panels.browser.refresh(&state.files.folders, &saved.id);
-            state.session.remember(saved);
-            state.notify(Level::Info, format!("Saved {}", path.display()));
+            app.state.session.preset_file = saved.clone();
+            app.state.settings.recents.add_opened(&saved);
+            app.panels
+                .browser
+                .refresh(&app.state.files.folders, &saved.id);
+            app.state.session.remember(saved);
+            app.notify(Level::Info, format!("Saved {}", path.display()));
         }
-        Err(error) => save_failed(state, panels, Purpose::SaveAs, path, error.to_string()),
+        Err(error) => save_failed(app, Purpose::SaveAs, path, error.to_string()),
     }
 }
 
@@ -357,62 +321,64 @@ fn keep_effects(state: &State, saved: &PresetFile, path: &Path) -> Result<(), St
 }
 
 /// Shows the dialog of a save that failed again, with its path and the reason.
-pub fn save_failed(
-    state: &mut State,
-    panels: &mut Panels,
-    purpose: Purpose,
-    path: &Path,
-    reason: String,
-) {
-    if panels.dialogs.save_failed(purpose, path, &reason) {
-        state.log.add(Level::Error, reason);
+pub fn save_failed(app: &mut App, purpose: Purpose, path: &Path, reason: String) {
+    if app.panels.dialogs.save_failed(purpose, path, &reason) {
+        app.state.log.add(Level::Error, reason);
     } else {
-        state.notify(Level::Error, reason);
+        app.notify(Level::Error, reason);
     }
 }
 
-pub fn export(state: &mut State, panels: &mut Panels, path: PathBuf, size: [u32; 2]) {
+/// Draws the picture at this size and saves it as a PNG.
+pub fn export(app: &mut App, path: PathBuf, size: [u32; 2]) {
     if let Err(reason) = make_folder_of(&path) {
-        return save_failed(state, panels, Purpose::Export, &path, reason);
+        return save_failed(app, Purpose::Export, &path, reason);
     }
-    let (Some(scene), Some(requested)) = (state.session.scene(), state.picture.screen.requested())
-    else {
-        return state.notify(Level::Error, "There is no picture to export yet");
+    let (Some(scene), Some(requested)) = (
+        app.state.session.scene(),
+        app.state.picture.screen.requested(),
+    ) else {
+        return app.notify(Level::Error, "There is no picture to export yet");
     };
-    let mut exported = state.session.preset_file.clone();
-    exported.preset = state.session.shown_preset();
+    let mut exported = app.state.session.preset_file.clone();
+    exported.preset = app.state.session.shown_preset();
     // The preset in the picture pins the anti-aliasing.
     exported.preset.accuracy = exported.preset.accuracy.anti_aliased();
-    let accuracy = state.picture.tier_times.informed(exported.preset.accuracy);
+    let accuracy = app
+        .state
+        .picture
+        .tier_times
+        .informed(exported.preset.accuracy);
     let inputs = Inputs {
-        view: state.session.view_at(scene, size),
-        stack: state
-            .session
-            .visible_stack()
-            .drawn(state.session.length_scale(state.session.preset(), size)),
+        view: app.state.session.view_at(scene, size),
+        stack: app.state.session.visible_stack().drawn(
+            app.state
+                .session
+                .length_scale(app.state.session.preset(), size),
+        ),
         accuracy,
         ..requested.clone()
     };
-    state
+    app.state
         .jobs
-        .export(state.picture.screen.gpu.clone(), inputs, exported, path);
+        .export(app.state.picture.screen.gpu.clone(), inputs, exported, path);
 }
 
 /// Draws a film as the window shows the preset: without muted effects.
-pub fn export_film(state: &State, request: film::Request, progress: Arc<film::Progress>) {
+pub fn export_film(app: &mut App, request: film::Request, progress: Arc<film::Progress>) {
     // A folder that cannot be made is named by what is written into it.
     drop(make_folder_of(&request.path));
-    let Some(scene) = state.session.scene() else {
+    let Some(scene) = app.state.session.scene() else {
         return;
     };
-    let mut exported = state.session.preset_file.clone();
-    state
+    let mut exported = app.state.session.preset_file.clone();
+    app.state
         .session
         .muted
         .iter()
         .for_each(|effect| exported.preset.disable(effect));
-    state.jobs.export_film(
-        state.picture.screen.gpu.clone(),
+    app.state.jobs.export_film(
+        app.state.picture.screen.gpu.clone(),
         scene.clone(),
         exported,
         request,

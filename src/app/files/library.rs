@@ -2,19 +2,14 @@
 
 use std::{path::Path, sync::Arc};
 
-use eframe::egui;
-
-use super::{
-    command::{LibraryCommand, Naming},
-    deleted::Deleted,
-};
+use super::{command::Naming, deleted::Deleted, favorites::Starred};
 use crate::{
     app::{
+        App,
         editing::{
             history::History,
             session::{FileId, UndoState},
         },
-        panels::Panels,
         shell::{command::Edit, log::Level, state::State},
     },
     effects::Effect,
@@ -22,47 +17,47 @@ use crate::{
     preset_file::{self, EffectValues, PresetError, PresetFile},
 };
 
-/// Carries out `command`.
-pub fn library(
-    ctx: &egui::Context,
-    state: &mut State,
-    panels: &mut Panels,
-    command: LibraryCommand,
-) {
-    match command {
-        LibraryCommand::Star(kind, name, is_on) => {
-            state.files.favorites.change(kind, &name, is_on);
-            write_favorites(state);
+/// Makes the preset of this id, or the effect of this name, a favorite, or takes its star away.
+pub fn star(app: &mut App, kind: Starred, name: &str, is_on: bool) {
+    app.state.files.favorites.change(kind, name, is_on);
+    write_favorites(&mut app.state);
+}
+
+/// Uses the name that was asked for.
+pub fn use_name(app: &mut App, naming: Naming, name: String) {
+    let outcome = match &naming {
+        Naming::Preset { path, .. } => rename(app, path, &name),
+        Naming::Values(effect) => save_values(&mut app.state, effect, &name),
+        Naming::Bookmark(from) => {
+            let to = name.trim();
+            let edit = Edit::RenameBookmark(from.clone(), to.to_owned());
+            let renamed = app.state.session.edit(edit);
+            renamed.map(|()| format!("Renamed to {to}"))
         }
-        LibraryCommand::AskName(naming) => panels.naming.ask(naming),
-        LibraryCommand::Name(naming, name) => match named(state, panels, &naming, &name) {
-            Ok(text) => state.notify(Level::Info, text),
-            Err(error) => panels.naming.refuse(naming, name, error),
-        },
-        LibraryCommand::Duplicate(source) => {
-            notify_outcome(state, |state| duplicate(state, panels, &source))
-        }
-        LibraryCommand::Delete(path) => notify_outcome(state, |state| delete(state, panels, &path)),
-        LibraryCommand::Restore => notify_outcome(state, |state| restore(state, panels)),
-        LibraryCommand::ForgetDeleted => state.files.deleted.clear(),
-        LibraryCommand::CopyEffect(effect) => copy_effect(ctx, state, &effect),
-        LibraryCommand::UseValues(path) => {
-            let loaded = preset_file::load_values(&path, &state.session.preset_file.effects);
-            notify_outcome(state, |state| {
-                put(state, &loaded.map_err(sentence)?, "Took the values of")
-            });
-        }
-        LibraryCommand::DeleteValues(path) => {
-            notify_outcome(state, |state| delete_values(state, &path))
-        }
+    };
+    match outcome {
+        Ok(text) => app.notify(Level::Info, text),
+        Err(error) => app.panels.naming.refuse(naming, name, error),
     }
 }
 
+/// Gives an effect the values of a file.
+pub fn use_values(app: &mut App, path: &Path) {
+    let loaded = preset_file::load_values(path, &app.state.session.preset_file.effects);
+    notify_outcome(app, |app| {
+        put(
+            &mut app.state,
+            &loaded.map_err(sentence)?,
+            "Took the values of",
+        )
+    });
+}
+
 /// Says what was done, or why it was not.
-fn notify_outcome(state: &mut State, change: impl FnOnce(&mut State) -> Result<String, String>) {
-    match change(state) {
-        Ok(text) => state.notify(Level::Info, text),
-        Err(error) => state.notify(Level::Error, error),
+pub fn notify_outcome(app: &mut App, change: impl FnOnce(&mut App) -> Result<String, String>) {
+    match change(app) {
+        Ok(text) => app.notify(Level::Info, text),
+        Err(error) => app.notify(Level::Error, error),
     }
 }
 
@@ -77,35 +72,10 @@ pub fn write_favorites(state: &mut State) {
     }
 }
 
-/// Does with `name` what it was asked for.
-fn named(
-    state: &mut State,
-    panels: &mut Panels,
-    naming: &Naming,
-    name: &str,
-) -> Result<String, String> {
-    match naming {
-        Naming::Preset { path, .. } => rename(state, panels, path, name),
-        Naming::Values(effect) => save_values(state, effect, name),
-        Naming::Bookmark(from) => {
-            let to = name.trim();
-            let edit = Edit::RenameBookmark(from.clone(), to.to_owned());
-            state
-                .session
-                .edit(edit)
-                .map(|()| format!("Renamed to {to}"))
-        }
-    }
-}
-
-fn rename(
-    state: &mut State,
-    panels: &mut Panels,
-    path: &Path,
-    name: &str,
-) -> Result<String, String> {
-    let open = open_at(state, path);
-    if open.as_ref().is_some_and(|id| !is_known(state, id)) {
+/// Gives the file of a preset another name.
+fn rename(app: &mut App, path: &Path, name: &str) -> Result<String, String> {
+    let open = open_at(&app.state, path);
+    if open.as_ref().is_some_and(|id| !is_known(&app.state, id)) {
         return Err(format!(
             "Another program has changed {}. Save or reload it, then rename it",
             path.display()
@@ -115,29 +85,24 @@ fn rename(
         .map_err(sentence)
         .map(|_| stem(path))?;
     let to = preset_file::rename(path, name).map_err(sentence)?;
-    state.settings.recents.rename(path, &to);
-    let renamed = preset_file::load_with(&to, &state.session.preset_file.effects);
+    app.state.settings.recents.rename(path, &to);
+    let renamed = preset_file::load_with(&to, &app.state.session.preset_file.effects);
     if let (Some(id), Ok(renamed)) = (open, renamed) {
-        refile(state, &id, renamed);
+        refile(&mut app.state, &id, renamed);
     }
     let after = stem(&to);
-    if before != after
-        && state
+    if before != after && app.state.files.favorites.has(Starred::Preset, &before) {
+        app.state
             .files
             .favorites
-            .has(super::favorites::Starred::Preset, &before)
-    {
-        state
+            .change(Starred::Preset, &before, false);
+        app.state
             .files
             .favorites
-            .change(super::favorites::Starred::Preset, &before, false);
-        state
-            .files
-            .favorites
-            .change(super::favorites::Starred::Preset, &after, true);
-        write_favorites(state);
+            .change(Starred::Preset, &after, true);
+        write_favorites(&mut app.state);
     }
-    panels.browser.refresh(&state.files.folders, &after);
+    app.panels.browser.refresh(&app.state.files.folders, &after);
     Ok(format!("Renamed to {}", name.trim()))
 }
 
@@ -182,47 +147,49 @@ fn refile_history(history: &mut History<UndoState>, before: &FileId, after: &Pre
     });
 }
 
-fn duplicate(
-    state: &mut State,
-    panels: &mut Panels,
-    source: &PresetFile,
-) -> Result<String, String> {
+/// Writes a copy of the preset, as its file has it.
+pub fn duplicate(app: &mut App, source: &PresetFile) -> Result<String, String> {
     let own = source
         .path
         .as_deref()
         .and_then(Path::parent)
         .map(Path::to_owned);
     let folder = own
-        .or_else(|| state.files.folders.presets.clone())
-        .or_else(|| state.files.folders.user_presets());
+        .or_else(|| app.state.files.folders.presets.clone())
+        .or_else(|| app.state.files.folders.user_presets());
     let folder =
         folder.ok_or("There is no folder for presets; open the window with --presets DIR")?;
     let copy = preset_file::duplicate(source, &folder).map_err(sentence)?;
-    panels.browser.refresh(&state.files.folders, &stem(&copy));
+    app.panels
+        .browser
+        .refresh(&app.state.files.folders, &stem(&copy));
     Ok(format!("Duplicated as {}", copy.display()))
 }
 
-fn delete(state: &mut State, panels: &mut Panels, path: &Path) -> Result<String, String> {
-    let open = open_at(state, path);
+/// Moves the preset at this path to the trash.
+pub fn delete(app: &mut App, path: &Path) -> Result<String, String> {
+    let open = open_at(&app.state, path);
     let deleted = Deleted::delete(path)?;
-    state.settings.recents.remove(path);
+    app.state.settings.recents.remove(path);
     if let Some(id) = open
-        && let Some(mut filed) = state.session.filed(&id).cloned()
+        && let Some(mut filed) = app.state.session.filed(&id).cloned()
     {
         // The window keeps showing it. Save asks for a name.
         filed.path = None;
-        refile(state, &id, filed);
+        refile(&mut app.state, &id, filed);
     }
     let text = format!("Deleted {}", deleted.name());
-    panels
+    app.panels
         .browser
-        .refresh(&state.files.folders, &deleted.name());
-    state.files.deleted.push(deleted);
+        .refresh(&app.state.files.folders, &deleted.name());
+    app.state.files.deleted.push(deleted);
     Ok(text)
 }
 
-fn restore(state: &mut State, panels: &mut Panels) -> Result<String, String> {
-    let deleted = state
+/// Puts the preset that was deleted last back.
+pub fn restore(app: &mut App) -> Result<String, String> {
+    let deleted = app
+        .state
         .files
         .deleted
         .pop()
@@ -232,11 +199,13 @@ fn restore(state: &mut State, panels: &mut Panels) -> Result<String, String> {
         id: deleted.name(),
         path: None,
     };
-    let back = preset_file::load_with(&path, &state.session.preset_file.effects);
-    if let (Some(_), Ok(back)) = (state.session.filed(&id), back) {
-        refile(state, &id, back);
+    let back = preset_file::load_with(&path, &app.state.session.preset_file.effects);
+    if let (Some(_), Ok(back)) = (app.state.session.filed(&id), back) {
+        refile(&mut app.state, &id, back);
     }
-    panels.browser.refresh(&state.files.folders, &stem(&path));
+    app.panels
+        .browser
+        .refresh(&app.state.files.folders, &stem(&path));
     Ok(format!("{} is back", path.display()))
 }
 
@@ -247,7 +216,9 @@ fn stem(path: &Path) -> String {
         .into_owned()
 }
 
-fn copy_effect(ctx: &egui::Context, state: &mut State, effect: &Arc<Effect>) {
+/// Puts the effect with its values on the clipboard.
+pub fn copy_effect(app: &mut App, effect: &Effect) {
+    let App { state, ctx, .. } = app;
     let Some(values) = EffectValues::of(state.session.preset(), &effect.name) else {
         return;
     };
@@ -262,10 +233,11 @@ fn copy_effect(ctx: &egui::Context, state: &mut State, effect: &Arc<Effect>) {
 }
 
 /// Pastes an effect with its values as one step of undo.
-pub fn paste_effect(state: &mut State, text: &str) {
-    let parsed = EffectValues::parse(text, "the clipboard", &state.session.preset_file.effects);
-    notify_outcome(state, |state| {
-        put(state, &parsed.map_err(sentence)?, "Pasted")
+pub fn paste_effect(app: &mut App, text: &str) {
+    let effects = &app.state.session.preset_file.effects;
+    let parsed = EffectValues::parse(text, "the clipboard", effects);
+    notify_outcome(app, |app| {
+        put(&mut app.state, &parsed.map_err(sentence)?, "Pasted")
     });
 }
 
@@ -299,7 +271,12 @@ fn save_values(state: &mut State, effect: &Arc<Effect>, name: &str) -> Result<St
     ))
 }
 
-fn delete_values(state: &mut State, path: &Path) -> Result<String, String> {
+/// Moves a file of values to the trash.
+pub fn delete_values(app: &mut App, path: &Path) {
+    notify_outcome(app, |app| trash_values(&mut app.state, path));
+}
+
+fn trash_values(state: &mut State, path: &Path) -> Result<String, String> {
     let deleted = Deleted::delete(path)?;
     state.files.values = state
         .files

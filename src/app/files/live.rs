@@ -21,13 +21,6 @@ pub enum Subject {
     Shaders,
 }
 
-/// What replaces something that is shown, as soon as it is compiled.
-pub enum Reload {
-    Effects(Box<EffectReload>),
-    /// The shaders of a folder; the number tells requests apart.
-    Shaders(u64),
-}
-
 /// Effects as their files have them now.
 pub struct EffectReload {
     /// Tells requests apart.

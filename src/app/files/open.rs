@@ -5,22 +5,23 @@
 //! on it: its look takes the place of the one that is shown, with lengths fitted from the box of
 //! its own scene to that of the user's.
 
-use std::path::Path;
+use std::{path::Path, sync::Arc};
 
 use super::{
     command::{CodeUse, Manner},
     opening::{Opening, Request},
+    reload::model_reloaded,
     scene_loader::SceneKey,
 };
 use crate::{
     app::{
-        panels::{Panels, timeline::Timeline},
+        App,
         settings::last_session::Restored,
         shell::{log::Level, state::State},
     },
     preset::{Output, SceneSource},
     preset_file::PresetFile,
-    scene::Bounds,
+    scene::{Bounds, Scene},
 };
 
 /// How what a person names is opened. A picture holds a whole state, so it brings its scene.
@@ -36,28 +37,22 @@ pub fn manner_of(what: &str, opened: &PresetFile) -> Manner {
 }
 
 /// Makes `opened` the open preset, as a separate undo step.
-fn open_preset(state: &mut State, panels: &mut Panels, mut opened: PresetFile) {
-    state.history.close();
+fn open_preset(app: &mut App, mut opened: PresetFile) {
+    app.state.history.close();
     for remark in opened.remarks() {
-        state.log.add(Level::Warning, remark);
+        app.state.log.add(Level::Warning, remark);
     }
-    opened.effects = opened.effects.joined(&state.files.folders.effects);
-    state.settings.recents.add_opened(&opened);
-    state.session.open(opened);
-    panels.timeline = Timeline::default();
-    state.observe(false);
-    state.history.close();
+    opened.effects = opened.effects.joined(&app.state.files.folders.effects);
+    app.state.settings.recents.add_opened(&opened);
+    app.state.session.open(opened);
+    app.panels.timeline = Default::default();
+    app.state.observe(false);
+    app.state.history.close();
 }
 
 /// Opens a preset or model, after its scene has been read, and says `said` when it is shown.
-pub fn begin(
-    state: &mut State,
-    panels: &mut Panels,
-    opened: PresetFile,
-    manner: Manner,
-    said: String,
-) {
-    let open = &state.session.preset_file;
+pub fn begin(app: &mut App, opened: PresetFile, manner: Manner, said: String) {
+    let open = &app.state.session.preset_file;
     // A preset of the same model comes with its camera and clip.
     let is_of_this_model = matches!(opened.preset.scene, SceneSource::File(_))
         && opened.scene_source() == open.scene_source();
@@ -66,61 +61,63 @@ pub fn begin(
     let lands =
         manner != Manner::Look || has_no_scene || (open.has_own_scene() && !is_of_this_model);
     let manner = if lands { manner } else { Manner::WithScene };
-    state.files.opening.waiting = Some(Request {
+    app.state.files.opening.waiting = Some(Request {
         opened: opened.into(),
         manner,
         said,
         loading: None,
     });
-    go_on(state, panels);
+    go_on(app);
 }
 
 /// Opens what was open in the last session, with its unsaved edits. Code that it brings runs only
 /// if the user has allowed it.
-pub fn restore(state: &mut State, panels: &mut Panels, Restored { preset_file, filed }: Restored) {
+pub fn restore(app: &mut App, Restored { preset_file, filed }: Restored) {
     let said = format!("Opened {} as it was", preset_file.title());
-    if !state
+    if !app
+        .state
         .files
         .trust
-        .allows(&preset_file, &state.files.folders.effects)
+        .allows(&preset_file, &app.state.files.folders.effects)
     {
-        return panels
+        return app
+            .panels
             .dialogs
             .ask_code(preset_file.into(), CodeUse::Open(Manner::WithScene, said));
     }
     let key = SceneKey::of(&preset_file);
-    open_preset(state, panels, filed);
-    state.session.preset_file.preset = preset_file.preset;
-    state.files.opening.waiting = None;
-    state.files.opening.announced = Some((key, said));
+    open_preset(app, filed);
+    app.state.session.preset_file.preset = preset_file.preset;
+    app.state.files.opening.waiting = None;
+    app.state.files.opening.announced = Some((key, said));
 }
 
 /// Opens what waits, if everything that it needs has been read, or starts reading that.
-fn go_on(state: &mut State, panels: &mut Panels) {
-    let Some(mut request) = state.files.opening.waiting.take() else {
+fn go_on(app: &mut App) {
+    let Some(mut request) = app.state.files.opening.waiting.take() else {
         return;
     };
     let key = SceneKey::of(&request.opened);
     let is_new_file = request.manner != Manner::Look
         && matches!(key.source, SceneSource::File(_))
-        && !state.session.scenes.has(&key);
+        && !app.state.session.scenes.has(&key);
     if is_new_file {
-        let work = state.session.scenes.reload(&key);
-        state.jobs.load_scene(key.clone(), work);
+        let work = app.state.session.scenes.reload(&key);
+        app.state.jobs.load_scene(key.clone(), work);
         request.loading = Some(key);
-        state.files.opening.waiting = Some(request);
+        app.state.files.opening.waiting = Some(request);
         return;
     }
     let (look, own) = match request.manner {
-        Manner::WithScene => return finish(state, panels, *request.opened, request.said),
-        Manner::Look => (&*request.opened, &state.session.preset_file),
-        Manner::Scene => (&state.session.preset_file, &*request.opened),
+        Manner::WithScene => return finish(app, *request.opened, request.said),
+        Manner::Look => (&*request.opened, &app.state.session.preset_file),
+        Manner::Scene => (&app.state.session.preset_file, &*request.opened),
     };
     let sources = [look.scene_source(), own.scene_source()];
     let mut boxes = [None; 2];
     if look.needs_fit() && look.outside_model.is_none() {
         for (source, found) in sources.iter().zip(&mut boxes) {
-            *found = bounds(state, source);
+            *found = bounds(&app.state, source);
         }
         if boxes.iter().any(Option::is_none) {
             for source in sources
@@ -129,16 +126,16 @@ fn go_on(state: &mut State, panels: &mut Panels) {
                 .filter(|(_, found)| found.is_none())
                 .map(|(source, _)| source)
             {
-                if state.files.opening.start_measuring(&source) {
-                    state.jobs.measure_scene(source);
+                if app.state.files.opening.start_measuring(&source) {
+                    app.state.jobs.measure_scene(source);
                 }
             }
-            state.files.opening.waiting = Some(request);
+            app.state.files.opening.waiting = Some(request);
             return;
         }
     }
     let [from, to] = boxes.map(Option::flatten);
-    land(state, panels, request, from.zip(to));
+    land(app, request, from.zip(to));
 }
 
 /// The box of a scene: none if it is not known, none in it if the scene cannot be loaded.
@@ -153,19 +150,19 @@ fn bounds(state: &State, source: &SceneSource) -> Option<Option<Bounds>> {
 
 /// Puts a look on a scene: that of the request on the open one, or the open one on that of the
 /// request.
-fn land(state: &mut State, panels: &mut Panels, request: Request, boxes: Option<(Bounds, Bounds)>) {
+fn land(app: &mut App, request: Request, boxes: Option<(Bounds, Bounds)>) {
     let Request {
         opened,
         manner,
         said,
         ..
     } = request;
-    let open = &state.session.preset_file;
+    let open = &app.state.session.preset_file;
     let (looks, owner) = match manner {
         Manner::Look => (&*opened, open),
         _ => (open, &*opened),
     };
-    let own = state.session.scenes.get(&SceneKey::of(owner)).cloned();
+    let own = app.state.session.scenes.get(&SceneKey::of(owner)).cloned();
     let fit = boxes.and_then(|(from, to)| looks.fit_to(owner, [&from, &to], own.as_deref()));
     let mut landed = if manner == Manner::Look {
         // A model that cannot move misses no clip.
@@ -198,7 +195,7 @@ fn land(state: &mut State, panels: &mut Panels, request: Request, boxes: Option<
         landed.warnings.push(text);
     }
     let key = SceneKey::of(&landed);
-    if let Some(scene) = state.session.scenes.get(&key) {
+    if let Some(scene) = app.state.session.scenes.get(&key) {
         let title = landed.title().to_owned();
         landed.warnings.extend(
             landed
@@ -228,9 +225,9 @@ fn land(state: &mut State, panels: &mut Panels, request: Request, boxes: Option<
     };
     if manner == Manner::Look {
         // The menu opens it with its scene.
-        state.session.remember(*opened);
+        app.state.session.remember(*opened);
     }
-    finish(state, panels, landed, said);
+    finish(app, landed, said);
 }
 
 /// A look without the clip of its own scene.
@@ -240,21 +237,17 @@ fn without_clip(look: &PresetFile) -> PresetFile {
     look
 }
 
-fn finish(state: &mut State, panels: &mut Panels, opened: PresetFile, said: String) {
+fn finish(app: &mut App, opened: PresetFile, said: String) {
     let key = SceneKey::of(&opened);
-    open_preset(state, panels, opened);
-    state.files.opening.waiting = None;
-    state.files.opening.announced = Some((key, said));
+    open_preset(app, opened);
+    app.state.files.opening.waiting = None;
+    app.state.files.opening.announced = Some((key, said));
 }
 
 /// A scene has loaded (true) or cannot be: opens what waits for it. Returns true if something did.
-pub fn scene_arrived(
-    state: &mut State,
-    panels: &mut Panels,
-    key: &SceneKey,
-    is_loaded: bool,
-) -> bool {
-    if state
+fn scene_arrived(app: &mut App, key: &SceneKey, is_loaded: bool) -> bool {
+    if app
+        .state
         .files
         .opening
         .waiting
@@ -264,37 +257,60 @@ pub fn scene_arrived(
         return false;
     }
     if is_loaded {
-        go_on(state, panels);
+        go_on(app);
     } else {
-        state.files.opening.waiting = None;
+        app.state.files.opening.waiting = None;
     }
     true
 }
 
 /// Stops loading a scene. What is shown stays; where nothing is, another scene must be chosen.
-pub fn cancel_loading(state: &mut State, panels: &mut Panels) {
-    let Some(key) = state.session.scenes.cancel() else {
+pub fn cancel_loading(app: &mut App) {
+    let Some(key) = app.state.session.scenes.cancel() else {
         return;
     };
-    if !scene_arrived(state, panels, &key, false) && state.session.scenes.shown_for(&key).is_none()
-    {
-        state.session.scenes.arrived(key, None);
+    if !scene_arrived(app, &key, false) && app.state.session.scenes.shown_for(&key).is_none() {
+        app.state.session.scenes.take_scene(key, None);
     }
-    state.notify(Level::Info, "Loading was stopped");
+    app.notify(Level::Info, "Loading was stopped");
 }
 
 /// The box of a scene has been found, or cannot be: opens what waits for it.
-pub fn bounds_arrived(
-    state: &mut State,
-    panels: &mut Panels,
-    source: SceneSource,
-    bounds: Result<Bounds, String>,
-) {
+pub fn take_bounds(app: &mut App, source: SceneSource, bounds: Result<Bounds, String>) {
     if let Err(error) = &bounds {
-        state.log.add(Level::Warning, error.clone());
+        app.state.log.add(Level::Warning, error.clone());
     }
-    state.files.opening.measured(source, bounds.ok());
-    go_on(state, panels);
+    app.state.files.opening.measured(source, bounds.ok());
+    go_on(app);
+}
+
+/// Takes a scene that has loaded, or why it cannot be.
+pub fn take_scene(app: &mut App, key: SceneKey, loaded: Result<Arc<Scene>, String>) {
+    match loaded {
+        Ok(scene) => {
+            for note in &scene.notes {
+                let text = format!("{}: {note}", scene.name);
+                app.state.log.add(Level::Warning, text);
+            }
+            model_reloaded(&mut app.state, &key, Ok(()));
+            app.state
+                .session
+                .scenes
+                .take_scene(key.clone(), Some(scene));
+            scene_arrived(app, &key, true);
+        }
+        Err(error) => {
+            if scene_arrived(app, &key, false) {
+                app.state.session.scenes.abandon(&key);
+                return app.notify(Level::Error, error);
+            }
+            let is_again = model_reloaded(&mut app.state, &key, Err(&error));
+            app.state.session.scenes.take_scene(key, None);
+            if !is_again {
+                app.notify(Level::Error, error);
+            }
+        }
+    }
 }
 
 /// Says that a preset was opened, as soon as its scene is shown. Another preset that was opened

@@ -8,13 +8,13 @@ use std::{
 
 use super::{
     command::CodeUse,
-    live::{EffectReload, Reload, Subject, Waiting},
+    live::{EffectReload, Subject, Waiting},
     scene_loader::SceneKey,
     watch::{Change, Effects, Targets},
 };
 use crate::{
     app::{
-        panels::Panels,
+        App,
         picture::screen::Inputs,
         shell::{command::Edit, log::Level, state::State},
     },
@@ -29,17 +29,17 @@ use crate::{
 };
 
 /// Watches what the open preset uses, and takes in what has changed.
-pub fn take_changes(state: &mut State, panels: &mut Panels) {
-    state.files.live.watcher.watch(targets(state));
-    while let Some(change) = state.files.live.watcher.next() {
+pub fn take_changes(app: &mut App) {
+    app.state.files.live.watcher.watch(targets(&app.state));
+    while let Some(change) = app.state.files.live.watcher.next() {
         match change {
-            Change::Effects(effects) => effects_changed(state, panels, effects),
-            Change::Preset(path, read) => preset_changed(state, panels, &path, read),
-            Change::Model(path) => model_changed(state, &path),
-            Change::Shaders => shaders_changed(state, panels),
+            Change::Effects(effects) => effects_changed(app, effects),
+            Change::Preset(path, read) => preset_changed(app, &path, read),
+            Change::Model(path) => model_changed(&mut app.state, &path),
+            Change::Shaders => shaders_changed(app),
         }
     }
-    enable_waiting(state);
+    enable_waiting(&mut app.state);
 }
 
 /// What is watched for the open preset.
@@ -76,14 +76,14 @@ fn fault(state: &mut State, subject: Subject, text: String) {
     }
 }
 
-fn effects_changed(state: &mut State, panels: &mut Panels, effects: Effects) {
+fn effects_changed(app: &mut App, effects: Effects) {
     let Effects {
         shared,
         open,
         faults,
     } = effects;
-    let before = &state.session.preset_file.effects;
-    let stack = &state.session.preset().stack;
+    let before = &app.state.session.preset_file.effects;
+    let stack = &app.state.session.preset().stack;
     // Effects that came inside the preset stay, and so does one that is enabled and whose file is
     // gone.
     let kept = before.only(|name, effect| {
@@ -99,52 +99,47 @@ fn effects_changed(state: &mut State, panels: &mut Panels, effects: Effects) {
     let is_faulty = |name: &str| {
         faults.iter().any(|(faulty, _)| faulty == name) || gone.iter().any(|gone| gone == name)
     };
-    state.files.live.keep_effect_faults(is_faulty);
+    app.state.files.live.keep_effect_faults(is_faulty);
     for (name, error) in faults {
-        fault(state, Subject::Effect(name), error.to_string());
+        fault(&mut app.state, Subject::Effect(name), error.to_string());
     }
     for name in gone {
         let text = format!(
             "{name}.wgsl: no folder of effects has this file any more; the picture keeps the effect as it was"
         );
-        fault(state, Subject::Effect(name), text);
+        fault(&mut app.state, Subject::Effect(name), text);
     }
-    if let Some(path) = panels.code.path().map(Path::to_owned)
+    if let Some(path) = app.panels.code.path().map(Path::to_owned)
         && let Some(text) = shared.written(&path).or_else(|| open.written(&path))
     {
-        panels.code.take_saved(&path, text);
+        app.panels.code.take_saved(&path, text);
     }
-    compile_effects(state, panels, shared, open);
+    compile_effects(app, shared, open);
 }
 
 /// Takes in an effect as its text was typed in the window; the file keeps its own.
-pub fn code_tried(
-    state: &mut State,
-    panels: &mut Panels,
-    path: &Path,
-    read: Result<Arc<Effect>, EffectError>,
-) {
+pub fn code_tried(app: &mut App, path: &Path, read: Result<Arc<Effect>, EffectError>) {
     let name = effect_files::stem(path);
     match read {
-        Err(error) => fault(state, Subject::Effect(name), error.to_string()),
+        Err(error) => fault(&mut app.state, Subject::Effect(name), error.to_string()),
         Ok(effect) => {
-            state.files.live.clear_fault(&Subject::Effect(name));
+            app.state.files.live.clear_fault(&Subject::Effect(name));
             let [shared, open] = [
-                &state.files.folders.effects,
-                &state.session.preset_file.effects,
+                &app.state.files.folders.effects,
+                &app.state.session.preset_file.effects,
             ]
             .map(|catalog| catalog.with_text_of(path, &effect));
-            compile_effects(state, panels, shared, open);
+            compile_effects(app, shared, open);
         }
     }
 }
 
 /// Compiles what the picture shows of effects that have changed, and uses them then.
-fn compile_effects(state: &mut State, panels: &mut Panels, shared: Catalog, open: Catalog) {
+fn compile_effects(app: &mut App, shared: Catalog, open: Catalog) {
     let good = |catalog: &Catalog, name: &str| catalog.find(name).ok().flatten().cloned();
-    let before = &state.session.preset_file.effects;
+    let before = &app.state.session.preset_file.effects;
     let mut replaced: Vec<Replaced> = Vec::new();
-    for (old, new) in [(before, &open), (&state.files.folders.effects, &shared)] {
+    for (old, new) in [(before, &open), (&app.state.files.folders.effects, &shared)] {
         for (name, _) in new.custom() {
             if let (Some(old), Some(new)) = (good(old, name), good(new, name))
                 && old != new
@@ -154,7 +149,8 @@ fn compile_effects(state: &mut State, panels: &mut Panels, shared: Catalog, open
             }
         }
     }
-    let instances: Vec<Arc<Effect>> = state
+    let instances: Vec<Arc<Effect>> = app
+        .state
         .session
         .catalogs()
         .flat_map(Catalog::instances)
@@ -173,23 +169,21 @@ fn compile_effects(state: &mut State, panels: &mut Panels, shared: Catalog, open
         }
     }
     let open = open.replaced(&replaced);
-    let number = state.files.live.request();
-    let reload = Box::new(EffectReload {
+    let number = app.state.files.live.request();
+    let reload = EffectReload {
         number,
         shared,
         open,
         replaced,
-    });
-    match compiled_inputs(state, &reload.replaced) {
+    };
+    match compiled_inputs(&app.state, &reload.replaced) {
         Some(inputs) => {
-            state.files.live.compiling_effects = Some(number);
-            state.jobs.compile(
-                state.picture.screen.gpu.clone(),
-                inputs,
-                Reload::Effects(reload),
-            );
+            app.state.files.live.compiling_effects = Some(number);
+            let gpu = app.state.picture.screen.gpu.clone();
+            let then = move |app: &mut App, outcome| effects_compiled(app, reload, outcome);
+            app.state.jobs.compile(gpu, inputs, then);
         }
-        None => use_effects(state, panels, *reload),
+        None => use_effects(app, reload),
     }
 }
 
@@ -207,87 +201,76 @@ fn compiled_inputs(state: &State, replaced: &[Replaced]) -> Option<Inputs> {
     Some(inputs)
 }
 
-/// Takes in the result of compiling; an outdated one is dropped.
-pub fn compiled(
-    state: &mut State,
-    panels: &mut Panels,
-    reload: Reload,
-    outcome: Result<(), String>,
-) {
-    match (reload, outcome) {
-        (Reload::Effects(reload), outcome) => {
-            if state.files.live.compiling_effects != Some(reload.number) {
-                return;
-            }
-            state.files.live.compiling_effects = None;
-            match outcome {
-                Ok(()) => use_effects(state, panels, *reload),
-                Err(error) => {
-                    let names: Vec<&str> = reload
-                        .replaced
-                        .iter()
-                        .map(|(_, new)| new.name.as_str())
-                        .collect();
-                    fault(
-                        state,
-                        Subject::Pipelines,
-                        format!("{}: {error}", names.join(", ")),
-                    );
-                }
-            }
+/// Takes in the result of compiling effects; an outdated one is dropped.
+fn effects_compiled(app: &mut App, reload: EffectReload, outcome: Result<(), String>) {
+    if app.state.files.live.compiling_effects != Some(reload.number) {
+        return;
+    }
+    app.state.files.live.compiling_effects = None;
+    match outcome {
+        Ok(()) => use_effects(app, reload),
+        Err(error) => {
+            let replaced = reload.replaced.iter();
+            let names: Vec<&str> = replaced.map(|(_, new)| new.name.as_str()).collect();
+            let text = format!("{}: {error}", names.join(", "));
+            fault(&mut app.state, Subject::Pipelines, text);
         }
-        (Reload::Shaders(number), outcome) => {
-            if state.files.live.compiling_shaders != Some(number) {
-                return;
-            }
-            state.files.live.compiling_shaders = None;
-            match outcome {
-                Ok(()) => use_shaders(state, panels),
-                Err(error) => fault(state, Subject::Shaders, error),
-            }
-        }
+    }
+}
+
+/// Takes in the result of compiling shaders; an outdated one is dropped.
+fn shaders_compiled(app: &mut App, number: u64, outcome: Result<(), String>) {
+    if app.state.files.live.compiling_shaders != Some(number) {
+        return;
+    }
+    app.state.files.live.compiling_shaders = None;
+    match outcome {
+        Ok(()) => use_shaders(app),
+        Err(error) => fault(&mut app.state, Subject::Shaders, error),
     }
 }
 
 /// Uses effects as their files have them now, in every preset that was opened and in every step of
 /// undo.
-fn use_effects(state: &mut State, panels: &mut Panels, reload: EffectReload) {
+fn use_effects(app: &mut App, reload: EffectReload) {
     let EffectReload {
         number: _,
         shared,
         open,
         replaced,
     } = reload;
-    state.files.live.clear_fault(&Subject::Pipelines);
-    state.files.folders.effects = shared;
-    state.session.rebind(&replaced, &open);
-    state
+    app.state.files.live.clear_fault(&Subject::Pipelines);
+    app.state.files.folders.effects = shared;
+    app.state.session.rebind(&replaced, &open);
+    app.state
         .history
         .change_all(|step| step.preset.rebind(&replaced));
     let is_replaced = |effect: &Effect| replaced.iter().any(|(old, _)| **old == *effect);
-    if state
+    if app
+        .state
         .picture
         .picking
         .as_ref()
         .is_some_and(|picking| is_replaced(picking.effect()))
     {
-        state.picture.picking = None;
+        app.state.picture.picking = None;
     }
-    if panels
+    if app
+        .panels
         .timeline
         .selected
         .as_ref()
         .is_some_and(|key| is_replaced(&key.effect))
     {
-        panels.timeline.selected = None;
+        app.panels.timeline.selected = None;
     }
     for (_, effect) in &replaced {
-        if state.session.preset().stack.get(&effect.name).is_some() {
-            state.notify(Level::Info, format!("{} was reloaded", effect.name));
+        if app.state.session.preset().stack.get(&effect.name).is_some() {
+            app.notify(Level::Info, format!("{} was reloaded", effect.name));
         }
     }
     if replaced.iter().any(|(_, new)| {
-        state
+        app.state
             .session
             .as_filed()
             .preset
@@ -295,9 +278,9 @@ fn use_effects(state: &mut State, panels: &mut Panels, reload: EffectReload) {
             .get(&new.name)
             .is_some()
     }) {
-        recheck_golden(state);
+        recheck_golden(&mut app.state);
     }
-    warn_of_other_file(state);
+    warn_of_other_file(&mut app.state);
 }
 
 /// Draws the golden of the open preset again, if it has one, and compares.
@@ -375,15 +358,15 @@ fn enable_waiting(state: &mut State) {
 
 /// Reads an effect file that was given to the page, and enables the effect.
 #[cfg(target_arch = "wasm32")]
-pub fn add_effect_file(state: &mut State, panels: &mut Panels, path: &Path) {
+pub fn add_effect_file(app: &mut App, path: &Path) {
     let with_file = |catalog: &Catalog| {
         let mut read = catalog.clone();
         read.add_file(path);
         read
     };
     let (shared, open) = (
-        with_file(&state.files.folders.effects),
-        with_file(&state.session.preset_file.effects),
+        with_file(&app.state.files.folders.effects),
+        with_file(&app.state.session.preset_file.effects),
     );
     let faults = open
         .custom()
@@ -391,32 +374,32 @@ pub fn add_effect_file(state: &mut State, panels: &mut Panels, path: &Path) {
         .filter_map(|(name, effect)| Some((name.to_owned(), effect.read.clone().err()?)));
     let effects = Effects {
         faults: faults.collect(),
-        shared: shared.or_last_good(&state.files.folders.effects),
-        open: open.or_last_good(&state.session.preset_file.effects),
+        shared: shared.or_last_good(&app.state.files.folders.effects),
+        open: open.or_last_good(&app.state.session.preset_file.effects),
     };
     for (_, error) in &effects.faults {
-        state.notify(Level::Error, error.to_string());
+        app.notify(Level::Error, error.to_string());
     }
-    state.files.live.enable = effects.faults.is_empty().then(|| Waiting {
+    app.state.files.live.enable = effects.faults.is_empty().then(|| Waiting {
         path: path.to_owned(),
         replaces: None,
     });
-    effects_changed(state, panels, effects);
+    effects_changed(app, effects);
 }
 
 /// Adds the folder of an effect file to those that are watched, and enables the effect.
 #[cfg(not(target_arch = "wasm32"))]
-pub fn add_effect_file(state: &mut State, _: &mut Panels, path: &Path) {
+pub fn add_effect_file(app: &mut App, path: &Path) {
     let Ok(path) = std::path::absolute(path) else {
         return;
     };
     if !path.is_file() {
-        return state.notify(
+        return app.notify(
             Level::Error,
             format!("{}: there is no such file", path.display()),
         );
     }
-    let watched = state.files.live.watcher.targets();
+    let watched = app.state.files.live.watcher.targets();
     let folders = watched
         .effect_folders
         .iter()
@@ -431,34 +414,29 @@ pub fn add_effect_file(state: &mut State, _: &mut Panels, path: &Path) {
         .or_else(|| path.parent().map(Path::to_owned))
         .unwrap_or_default();
     if known.is_none() {
-        state.files.folders.effect_folders.push(folder.clone());
+        app.state.files.folders.effect_folders.push(folder.clone());
     }
-    state.files.live.enable = path.file_name().map(|name| Waiting {
+    app.state.files.live.enable = path.file_name().map(|name| Waiting {
         path: folder.join(name),
         replaces: None,
     });
 }
 
-fn preset_changed(
-    state: &mut State,
-    panels: &mut Panels,
-    path: &PathBuf,
-    read: Result<Box<PresetFile>, String>,
-) {
-    if state.session.preset_file.path.as_ref() != Some(path) {
+fn preset_changed(app: &mut App, path: &PathBuf, read: Result<Box<PresetFile>, String>) {
+    if app.state.session.preset_file.path.as_ref() != Some(path) {
         return;
     }
     match read {
-        Err(error) => fault(state, Subject::Preset, error),
+        Err(error) => fault(&mut app.state, Subject::Preset, error),
         Ok(theirs) => {
-            state.files.live.clear_fault(&Subject::Preset);
-            if theirs.has_text_of(&state.session.preset_file) {
+            app.state.files.live.clear_fault(&Subject::Preset);
+            if theirs.has_text_of(&app.state.session.preset_file) {
                 return; // It was saved here.
             }
-            if state.session.is_modified() {
-                panels.dialogs.ask_changed(theirs, None);
+            if app.state.session.is_modified() {
+                app.panels.dialogs.ask_changed(theirs, None);
             } else {
-                offer_preset(state, panels, theirs);
+                offer_preset(app, theirs);
             }
         }
     }
@@ -466,15 +444,16 @@ fn preset_changed(
 
 /// Makes the open preset what its file has now; asks first if that brings code that has not been
 /// allowed.
-pub fn offer_preset(state: &mut State, panels: &mut Panels, theirs: Box<PresetFile>) {
-    if state
+pub fn offer_preset(app: &mut App, theirs: Box<PresetFile>) {
+    if app
+        .state
         .files
         .trust
-        .allows(&theirs, &state.files.folders.effects)
+        .allows(&theirs, &app.state.files.folders.effects)
     {
-        take_preset(state, panels, *theirs);
+        take_preset(app, *theirs);
     } else {
-        panels.dialogs.ask_code(theirs, CodeUse::Reload);
+        app.panels.dialogs.ask_code(theirs, CodeUse::Reload);
     }
 }
 
@@ -510,20 +489,22 @@ pub fn merge_preset(state: &mut State, theirs: PresetFile) {
 }
 
 /// Makes the open preset what its file has now, as a separate undo step.
-pub fn take_preset(state: &mut State, panels: &mut Panels, mut theirs: PresetFile) {
-    state.observe(false);
-    state.history.close();
+pub fn take_preset(app: &mut App, mut theirs: PresetFile) {
+    app.state.observe(false);
+    app.state.history.close();
     for remark in theirs.remarks() {
-        state.log.add(Level::Warning, remark);
+        app.state.log.add(Level::Warning, remark);
     }
     let (id, title) = (theirs.id.clone(), theirs.title().to_owned());
-    theirs.effects = theirs.effects.joined(&state.session.preset_file.effects);
-    state.session.reload(theirs);
-    state.observe(false);
-    state.history.close();
-    panels.browser.refresh(&state.files.folders, &id);
-    state.notify(Level::Info, format!("{title} was reloaded"));
-    recheck_golden(state);
+    theirs.effects = theirs
+        .effects
+        .joined(&app.state.session.preset_file.effects);
+    app.state.session.reload(theirs);
+    app.state.observe(false);
+    app.state.history.close();
+    app.panels.browser.refresh(&app.state.files.folders, &id);
+    app.notify(Level::Info, format!("{title} was reloaded"));
+    recheck_golden(&mut app.state);
 }
 
 fn model_changed(state: &mut State, path: &Path) {
@@ -554,23 +535,21 @@ pub fn model_reloaded(state: &mut State, key: &SceneKey, outcome: Result<(), &st
     is_again
 }
 
-fn shaders_changed(state: &mut State, panels: &mut Panels) {
-    let Some(inputs) = state.picture.screen.requested().cloned() else {
-        return use_shaders(state, panels);
+fn shaders_changed(app: &mut App) {
+    let Some(inputs) = app.state.picture.screen.requested().cloned() else {
+        return use_shaders(app);
     };
-    let number = state.files.live.request();
-    state.files.live.compiling_shaders = Some(number);
-    state.jobs.compile(
-        state.picture.screen.gpu.clone(),
-        inputs,
-        Reload::Shaders(number),
-    );
+    let number = app.state.files.live.request();
+    app.state.files.live.compiling_shaders = Some(number);
+    let gpu = app.state.picture.screen.gpu.clone();
+    let then = move |app: &mut App, outcome| shaders_compiled(app, number, outcome);
+    app.state.jobs.compile(gpu, inputs, then);
 }
 
-fn use_shaders(state: &mut State, panels: &mut Panels) {
-    state.files.live.clear_fault(&Subject::Shaders);
-    state.picture.screen.reload_shaders();
-    state.picture.tier_times.forget();
-    panels.viewport.compare.reload_shaders();
-    state.notify(Level::Info, "The shaders were reloaded");
+fn use_shaders(app: &mut App) {
+    app.state.files.live.clear_fault(&Subject::Shaders);
+    app.state.picture.screen.reload_shaders();
+    app.state.picture.tier_times.forget();
+    app.panels.viewport.compare.reload_shaders();
+    app.notify(Level::Info, "The shaders were reloaded");
 }

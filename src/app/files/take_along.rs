@@ -3,14 +3,12 @@
 
 use std::path::{Path, PathBuf};
 
-use eframe::egui;
-
-use super::{command::FileCommand, plain_file};
+use super::{open, plain_file};
 use crate::{
     app::{
+        App,
         settings::{Settings, last_session::LastSession},
         shell::{
-            command::{Command, Commands},
             log::Level,
             page::{self, KEPT},
             state::State,
@@ -53,14 +51,15 @@ pub fn is_export(files: &[(PathBuf, Vec<u8>)]) -> bool {
 }
 
 /// Uses the settings and opens the session of an archive whose files are in memory again.
-pub fn import(ctx: &egui::Context, state: &mut State, commands: &Commands) {
+pub fn import(app: &mut App) {
+    let state = &mut app.state;
     let kept = |name: &str| disk::read_to_string(&Path::new(KEPT).join(name)).ok();
     let mut remarks = Vec::new();
     if let Some(text) = kept("settings.toml") {
         match plain_file::parse::<Settings>(&text, "settings.toml", &mut remarks) {
             Ok((settings, _)) => {
-                settings.theme.choose(ctx);
-                ctx.set_zoom_factor(settings.scale);
+                settings.theme.choose(&app.ctx);
+                app.ctx.set_zoom_factor(settings.scale);
                 state.open = settings.open;
                 state.settings = settings;
             }
@@ -70,7 +69,7 @@ pub fn import(ctx: &egui::Context, state: &mut State, commands: &Commands) {
     if let Some(text) = kept("session.toml") {
         let session = LastSession::parse(&text, "session.toml");
         match session.and_then(|session| session.restore(&state.files.folders)) {
-            Ok(restored) => commands.send(Command::File(FileCommand::Restore(restored.into()))),
+            Ok(restored) => app.commands.run(|app| open::restore(app, restored)),
             Err(error) => remarks.push(error),
         }
     }

@@ -8,11 +8,15 @@ use std::{
     time::Duration,
 };
 
-use eframe::egui;
 use js_sys::Uint8Array;
 
 use super::{
-    Done, Jobs, THUMBNAIL_TRIANGLES, landed, worker,
+    Jobs, THUMBNAIL_TRIANGLES, done,
+    finished::{
+        take_effect_picture, take_golden, take_link, take_precision, take_thumbnail,
+        take_thumbnail_on, take_trade,
+    },
+    land_look, worker,
     worker::{Question, Task, Wish},
 };
 use crate::{
@@ -20,6 +24,7 @@ use crate::{
         editing::session::FileId,
         files::{command::Purpose, scene_loader::SceneKey, system_dialog},
         picture::{
+            apply::{take_blessed, take_reviewed, take_verdict},
             effect_picture::EffectPicture,
             findings::Findings,
             golden_check::{self, GoldenCheck, Outcome},
@@ -33,6 +38,7 @@ use crate::{
             request::{Progress, Request},
             sent,
         },
+        window::input,
     },
     link,
     preset::Preset,
@@ -48,13 +54,15 @@ impl Jobs {
     /// Refuses to draw a preset for the review of goldens.
     pub fn draw_golden(&self, name: String, _: Folders) {
         self.spawn("review", move || {
-            Done::Reviewed(name, Err(NO_GOLDENS.into()))
+            done(move |app| take_reviewed(&mut app.state, &name, Err(NO_GOLDENS.into())))
         });
     }
 
     /// Refuses to make a picture a golden.
     pub fn bless(&self, name: String, _: Folders, _: Arc<review::Drawn>) {
-        self.spawn("bless", move || Done::Blessed(name, Err(NO_GOLDENS.into())));
+        self.spawn("bless", move || {
+            done(move |app| take_blessed(&mut app.state, &name, Err(NO_GOLDENS.into())))
+        });
     }
 
     /// Draws `inputs`, which the preset says, and judges the picture with the oracle.
@@ -66,7 +74,7 @@ impl Jobs {
                 worker::ask(Task::Judge, &preset_file, size, work.clone(), is_canceled).await;
             let received = |sent| Findings::received(sent, &inputs.stack).map(Box::new);
             let judged = asked.and_then(|sent| sent.map(received).transpose());
-            Done::Verdict(Box::new(inputs), work, judged)
+            done(move |app| take_verdict(app, inputs, &work, judged))
         });
     }
 
@@ -80,7 +88,8 @@ impl Jobs {
         progress: Arc<Progress>,
     ) {
         self.spawn_waiting("trade", async move || {
-            Done::Trade(measured(&preset_file, &scene, &request, &progress).await)
+            let measured = measured(&preset_file, &scene, &request, &progress).await;
+            done(move |app| take_trade(app, measured))
         });
     }
 
@@ -91,7 +100,7 @@ impl Jobs {
                 Ok((colors, size)) => Some(image(colors.as_flattened(), size)),
                 Err(_) => picture(&preset_file, size).await,
             };
-            Done::Thumbnail(preset_file.id, image)
+            done(move |app| take_thumbnail(app, &preset_file.id, image))
         });
     }
 
@@ -104,11 +113,12 @@ impl Jobs {
         size: [u32; 2],
     ) {
         self.spawn_idle("thumbnail", async move || {
-            let image = match landed(&look, &own, &scene) {
+            let image = match land_look(&look, &own, &scene) {
                 Some(landed) => picture(&landed, size).await,
                 None => None,
             };
-            Done::ThumbnailOn(SceneKey::of(&own), look.id, image)
+            let key = SceneKey::of(&own);
+            done(move |app| take_thumbnail_on(app, &key, &look.id, image))
         });
     }
 
@@ -122,7 +132,7 @@ impl Jobs {
                 true => None,
                 false => picture(&preset_file, asked.size).await,
             };
-            Done::EffectPicture(asked.effect, image)
+            done(move |app| take_effect_picture(app, &asked.effect, image))
         });
     }
 
@@ -147,10 +157,8 @@ impl Jobs {
                     asked.and_then(|sent| sent.map(received).transpose())
                 }
             };
-            Done::Precision(
-                Box::new(inputs),
-                measured.map(|measured| measured.map(Box::new)),
-            )
+            let measured = measured.map(|measured| measured.map(Box::new));
+            done(move |app| take_precision(app, inputs, measured))
         });
     }
 
@@ -163,7 +171,7 @@ impl Jobs {
             let bits = asked.map(|bits| bits.and_then(|bits| bits.as_string()));
             let known = bits.as_ref().ok().and_then(Option::as_deref);
             let address = link::address(&page::beside(), &line, known);
-            Done::Link(address, bits.err())
+            done(move |app| take_link(app, address, bits.err()))
         });
     }
 
@@ -180,7 +188,7 @@ impl Jobs {
                 }),
                 Err(_) => None,
             };
-            Done::Golden(number, check)
+            done(move |app| take_golden(app, number, check))
         });
     }
 
@@ -188,14 +196,16 @@ impl Jobs {
     pub fn ask_files(&self) {
         let extensions = system_dialog::extensions(Purpose::Open);
         self.spawn_idle("files", async move || {
-            Done::Given(page::ask_files(&extensions).await)
+            let given = page::ask_files(&extensions).await;
+            done(move |app| input::take_given(app, given))
         });
     }
 
     /// Reads files that were dropped.
     pub fn take_dropped(&self, files: Vec<egui::DroppedFileHandle>) {
         self.spawn_idle("files", async move || {
-            Done::Given(page::take_dropped(files).await)
+            let given = page::take_dropped(files).await;
+            done(move |app| input::take_given(app, given))
         });
     }
 }

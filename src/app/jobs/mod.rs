@@ -2,7 +2,6 @@
 //! pictures, drawing thumbnails, saving pictures, waiting for file dialogs.
 
 pub mod background;
-pub mod computing;
 pub mod film;
 pub mod finished;
 #[cfg(target_arch = "wasm32")]
@@ -15,119 +14,65 @@ pub mod threads;
 pub mod worker;
 
 use std::{
-    collections::HashSet,
     path::{Path, PathBuf},
     sync::{Arc, mpsc},
     thread::JoinHandle,
 };
 
-use eframe::egui;
-
-use self::computing::{Computing, Count};
 use crate::{
     app::{
+        App,
+        editing::new_effect,
         files::{
+            apply::save_failed,
             command::{Origin, Purpose},
             completion::Listing,
-            live::Reload,
+            library, open, reload,
             scene_loader::SceneKey,
             system_dialog,
         },
         picture::{
-            cells::{self, CellOf, CellResult, Cells},
+            apply::take_verdict,
+            cells::{self, CellOf, Cells},
             command::Probed,
             findings::Findings,
-            golden_check::GoldenCheck,
-            precision::Measured,
-            review,
             screen::Inputs,
             tier_times::{self, TierDrawing, Timed},
         },
-        trade::point::Point,
+        shell::log::Level,
     },
-    effect_files::{self, EffectError},
-    effects::{Effect, Stack},
+    effect_files,
+    effects::Stack,
     frame::Geometry,
     gpu::{Capture, CompileWatch, Gpu, Renderer},
     host::disk,
     oracle,
     preset::{AccuracyRequest, Preset, SceneSource},
     preset_file::{self, Existing, PresetFile, Provenance},
-    scene::{Bounds, Scene, view::View},
+    scene::{Scene, view::View},
     shader::key::KernelKey,
     work::Work,
 };
 
-/// Finished work. Errors are sentences for people.
-pub enum Done {
-    Scene(SceneKey, Result<Arc<Scene>, String>),
-    /// A scene whose loading was canceled.
-    Canceled,
-    /// The box of a scene, without a room.
-    SceneBox(SceneSource, Result<Bounds, String>),
-    /// The verdict on a picture; none if the judgement was canceled.
-    Verdict(
-        Box<Inputs>,
-        Arc<Work>,
-        Result<Option<Box<Findings>>, String>,
-    ),
-    /// A small picture.
-    Cell(CellOf, CellResult),
-    /// Measured combinations of accuracy options.
-    Trade(Result<Vec<Point>, String>),
-    Thumbnail(String, Option<egui::ColorImage>),
-    /// The thumbnail of a preset on the user's own scene.
-    ThumbnailOn(SceneKey, String, Option<egui::ColorImage>),
-    /// The picture of an effect on the open model; none if it was cancelled or cannot be drawn.
-    EffectPicture(String, Option<egui::ColorImage>),
-    /// The favorites were written.
-    Favorites(Result<(), String>),
-    Export(PathBuf, Result<(), String>),
-    Film(Arc<film::Progress>, Result<film::Finished, film::Failure>),
-    /// Files that a page was given, which lie in its memory now.
-    #[cfg(target_arch = "wasm32")]
-    Given(Result<crate::app::shell::page::Given, String>),
-    /// How the system's file dialog ended.
-    Path(Purpose, system_dialog::Answer),
-    /// What is in a folder.
-    Folder(Listing),
-    /// Which recent files are not there.
-    Missing(HashSet<PathBuf>),
-    /// Pipelines for what was changed on disk.
-    Compiled(Reload, Result<(), String>),
-    /// The f32 errors of the user's effects in a picture; none if the measurement was cancelled.
-    Precision(Box<Inputs>, Result<Option<Box<Measured>>, String>),
-    /// What was told of a pixel.
-    Probed(Result<Box<Probed>, String>),
-    /// A tier of the open picture was timed.
-    TierTime(Box<Timed>),
-    /// The golden of a preset, compared again, by the number of its request; none if the preset has
-    /// no golden.
-    Golden(u64, Option<GoldenCheck>),
-    /// A preset of the review beside its golden; none if they are the same.
-    Reviewed(String, Result<Option<Arc<review::Drawn>>, String>),
-    /// The golden of a preset was accepted.
-    Blessed(String, Result<(), String>),
-    /// The file of a new effect.
-    EffectWritten(PathBuf, Origin, Result<(), String>),
-    /// The text of an effect file that is to be edited.
-    Code(PathBuf, Result<String, String>),
-    /// The text of an effect as it was typed, and what it is read as.
-    CodeTried(PathBuf, String, Result<Arc<Effect>, EffectError>),
-    /// The text of an effect file that was to be written.
-    CodeSaved(PathBuf, String, Result<(), String>),
-    /// A file that could not be opened in the user's editor.
-    NoEditor(PathBuf, String),
-    /// A link to a page, and why it does not carry the bits of its picture, if it does not.
-    Link(String, Option<String>),
+/// What finished work does to the window.
+pub type Done = Box<dyn FnOnce(&mut App) + Send>;
+
+/// The same, of a closure.
+fn done(take: impl FnOnce(&mut App) + Send + 'static) -> Done {
+    Box::new(take)
 }
+
+/// Work under way that keeps the processor busy, for as long as this exists: a picture that is
+/// measured meanwhile would seem slow.
+pub type Computing = Arc<()>;
 
 /// Starts threads and receives their results.
 pub struct Jobs {
     ctx: egui::Context,
     sender: mpsc::Sender<Done>,
     receiver: mpsc::Receiver<Done>,
-    computing: Count,
+    /// Held once more by all work that keeps the processor busy.
+    computing: Computing,
 }
 
 impl Jobs {
@@ -137,7 +82,7 @@ impl Jobs {
             ctx,
             sender,
             receiver,
-            computing: Count::default(),
+            computing: Computing::default(),
         }
     }
 
@@ -149,7 +94,7 @@ impl Jobs {
     /// True while a job keeps the processor busy: times that are measured meanwhile are not those
     /// of a picture at rest.
     pub fn is_computing(&self) -> bool {
-        self.computing.is_any()
+        Arc::strong_count(&self.computing) > 1
     }
 
     /// Starts work that keeps the processor busy.
@@ -210,10 +155,11 @@ impl Jobs {
                     background::compute(|| work.run(load)).transpose()
                 })
             });
-            match scene.transpose() {
-                Some(scene) => Done::Scene(key, scene),
-                None => Done::Canceled,
-            }
+            done(move |app| {
+                if let Some(scene) = scene.transpose() {
+                    open::take_scene(app, key, scene);
+                }
+            })
         });
     }
 
@@ -223,7 +169,7 @@ impl Jobs {
             let bounds = caught("measuring a scene", || {
                 preset_file::scene_bounds(&source, None).map_err(|e| e.to_string())
             });
-            Done::SceneBox(source, bounds)
+            done(move |app| open::take_bounds(app, source, bounds))
         });
     }
 
@@ -232,15 +178,21 @@ impl Jobs {
         self.spawn_waiting("verify", move || async move {
             let judged = caught_future("judging the picture", verify(gpu, &inputs, &work)).await;
             memory::give_back();
-            Done::Verdict(Box::new(inputs), work, judged)
+            done(move |app| take_verdict(app, inputs, &work, judged))
         });
     }
 
-    /// Compiles what `inputs` need, with the shaders as they are on disk now.
-    pub fn compile(&self, gpu: Arc<Gpu>, inputs: Inputs, reload: Reload) {
+    /// Compiles what `inputs` need, with the shaders as they are on disk now; `then` takes the
+    /// outcome.
+    pub fn compile(
+        &self,
+        gpu: Arc<Gpu>,
+        inputs: Inputs,
+        then: impl FnOnce(&mut App, Result<(), String>) + Send + 'static,
+    ) {
         self.spawn_waiting("compile", move || async move {
             let compiled = caught_future("compiling", compile(gpu, &inputs)).await;
-            Done::Compiled(reload, compiled)
+            done(move |app| then(app, compiled))
         });
     }
 
@@ -258,8 +210,11 @@ impl Jobs {
                     .map(|sample| sample.text(geometry.subpixel_bits));
                 Ok(texts.collect::<String>())
             };
-            let told = caught("looking into a pixel", || background::compute(look));
-            Done::Probed(told.map(|text| Box::new(Probed { of, pixel, text })))
+            let text = caught("looking into a pixel", || background::compute(look));
+            done(move |app| match text {
+                Ok(text) => app.state.picture.probed = Some(Probed { of, pixel, text }),
+                Err(error) => app.notify(Level::Error, error),
+            })
         });
     }
 
@@ -277,12 +232,15 @@ impl Jobs {
             let (picture, mut drawing) = (inputs, drawing);
             let measured = tier_times::measure(&gpu, &picture, &mut drawing, &watch);
             let outcome = caught_future("timing a tier", measured).await;
-            Done::TierTime(Box::new(Timed {
-                picture,
-                kernel,
-                outcome,
-                drawing,
-            }))
+            done(move |app| {
+                let timed = Timed {
+                    picture,
+                    kernel,
+                    outcome,
+                    drawing,
+                };
+                tier_times::take_times(&mut app.state, timed);
+            })
         })
     }
 
@@ -295,7 +253,7 @@ impl Jobs {
     ) {
         self.spawn("new effect", move || {
             let outcome = caught("writing the effect", || write(&path));
-            Done::EffectWritten(path, origin, outcome)
+            done(move |app| new_effect::written(app, path, origin, outcome))
         });
     }
 
@@ -311,7 +269,10 @@ impl Jobs {
                     .map_err(|error| format!("it cannot be read: {error}")),
             };
             let text = text.map_err(|reason| format!("{}: {reason}", path.display()));
-            Done::Code(path, text)
+            done(move |app| match text {
+                Ok(text) => app.panels.code.show(path, text),
+                Err(error) => app.notify(Level::Error, error),
+            })
         });
     }
 
@@ -321,7 +282,10 @@ impl Jobs {
             let file = path.file_name().unwrap_or_default().to_string_lossy();
             let stem = effect_files::stem(&path);
             let read = effect_files::read_beside(&file, &stem, &text, path.parent());
-            Done::CodeTried(path, text, read)
+            done(move |app| {
+                app.panels.code.take_error(&text, read.as_ref().err());
+                reload::code_tried(app, &path, read);
+            })
         });
     }
 
@@ -330,7 +294,10 @@ impl Jobs {
         self.spawn("effect file", move || {
             let saved = preset_file::write_atomically(&path, text.as_bytes(), Existing::Replace)
                 .map_err(|error| format!("{}: it cannot be written: {error}", path.display()));
-            Done::CodeSaved(path, text, saved)
+            done(move |app| match saved {
+                Ok(()) => app.panels.code.take_saved(&path, &text),
+                Err(error) => app.notify(Level::Error, error),
+            })
         });
     }
 
@@ -343,44 +310,39 @@ impl Jobs {
         } else {
             "xdg-open"
         };
-        let failed = match std::process::Command::new(opener)
-            .arg(&path)
-            .stdin(std::process::Stdio::null())
-            .spawn()
-        {
-            Ok(mut child) => {
-                let sender = (self.sender.clone(), self.ctx.clone());
-                std::thread::spawn(move || {
-                    // Some systems start the editor as a part of the opener, so this may take as
-                    // long as it is open. The explorer of Windows always
-                    // reports a failure.
-                    if !cfg!(windows)
-                        && let Ok(status) = child.wait()
-                        && !status.success()
-                        && sender
-                            .0
-                            .send(Done::NoEditor(
-                                path,
-                                format!("{opener} ended with {status}"),
-                            ))
-                            .is_ok()
-                    {
-                        sender.1.request_repaint();
-                    }
-                });
-                return;
-            }
-            Err(error) => format!("{opener}: {error}"),
-        };
-        // The receiver lives as long as `self`.
-        let _ = self.sender.send(Done::NoEditor(path, failed));
-        self.ctx.request_repaint();
+        self.spawn_idle("editor", move || async move {
+            // Some systems start the editor as a part of the opener, so this may take as long as it
+            // is open. The explorer of Windows always reports a failure.
+            let failed = match std::process::Command::new(opener)
+                .arg(&path)
+                .stdin(std::process::Stdio::null())
+                .status()
+            {
+                Ok(status) if cfg!(windows) || status.success() => None,
+                Ok(status) => Some(format!("{opener} ended with {status}")),
+                Err(error) => Some(format!("{opener}: {error}")),
+            };
+            done(move |app| {
+                if let Some(reason) = failed {
+                    let path = path.display();
+                    let text = format!("{path} could not be opened in an editor: {reason}");
+                    app.notify(Level::Warning, text);
+                }
+            })
+        });
     }
 
     /// Writes the favorites with this function.
     pub fn write_favorites(&self, write: impl FnOnce() -> Result<(), String> + Send + 'static) {
         self.spawn("favorites", move || {
-            Done::Favorites(caught("writing the favorites", write))
+            let written = caught("writing the favorites", write);
+            done(move |app| {
+                app.state.files.favorites.write_ended();
+                match written {
+                    Ok(()) => library::write_favorites(&mut app.state),
+                    Err(error) => app.notify(Level::Error, error),
+                }
+            })
         });
     }
 
@@ -390,8 +352,17 @@ impl Jobs {
         let work = move || async move {
             let _computing = computing;
             let take = |of, picture| {
+                let take = done(move |app| {
+                    let ctx = &app.ctx;
+                    match of {
+                        CellOf::Sweep { number, index } => {
+                            app.panels.sweep.take_picture(ctx, (number, index), picture)
+                        }
+                        CellOf::Seed(seed) => app.panels.randomize.take_picture(ctx, seed, picture),
+                    }
+                });
                 // The window may be closed by now; then the picture is dropped.
-                if sender.send(Done::Cell(of, picture)).is_ok() {
+                if sender.send(take).is_ok() {
                     ctx.request_repaint();
                 }
             };
@@ -413,7 +384,10 @@ impl Jobs {
         self.spawn_waiting("export", move || async move {
             let exported = export(gpu, &inputs, &preset_file, &path);
             let saved = caught_future("saving the picture", exported).await;
-            Done::Export(path, saved)
+            done(move |app| match saved {
+                Ok(()) => app.notify(Level::Info, format!("Saved {}", path.display())),
+                Err(error) => save_failed(app, Purpose::Export, &path, error),
+            })
         });
     }
 
@@ -435,40 +409,50 @@ impl Jobs {
             let ended = caught_future("drawing the film", work).await;
             memory::give_back();
             let ended = ended.unwrap_or_else(|bug| Err(film::Failure::Other(bug)));
-            Done::Film(progress, ended)
+            done(move |app| {
+                if let Some((level, text)) = app.panels.film.take_end(&progress, ended) {
+                    app.notify(level, text);
+                }
+            })
         });
     }
 
     /// Counts work on another thread, which keeps the processor busy, for as long as what is
     /// returned exists.
     pub fn busy(&self) -> Computing {
-        self.computing.add()
+        self.computing.clone()
     }
 
     /// Shows the system's file dialog.
     pub fn ask_path(&self, purpose: Purpose, start: &Path) {
         let show = system_dialog::prepare(purpose, start);
         self.spawn_idle("file dialog", move || async move {
-            Done::Path(purpose, show().await)
+            let answer = show().await;
+            done(move |app| {
+                let open = &app.state.session.preset_file;
+                app.panels
+                    .dialogs
+                    .path_arrived(purpose, answer, open, &app.commands)
+            })
         });
     }
 
     /// Reads what is in a folder.
     pub fn list_folder(&self, folder: PathBuf) {
         self.spawn_idle("folder", move || async move {
-            Done::Folder(Listing::read(&folder))
+            let listing = Listing::read(&folder);
+            done(move |app| app.panels.dialogs.folder_arrived(listing))
         });
     }
 
     /// Looks which of these files are not there.
     pub fn find_missing(&self, files: Vec<PathBuf>) {
         self.spawn_idle("recent files", move || async move {
-            Done::Missing(
-                files
-                    .into_iter()
-                    .filter(|file| !disk::exists(file))
-                    .collect(),
-            )
+            let missing = files
+                .into_iter()
+                .filter(|file| !disk::exists(file))
+                .collect();
+            done(move |app| app.state.files.missing_files = missing)
         });
     }
 }
@@ -583,7 +567,7 @@ const THUMBNAIL_TRIANGLES: u64 = 400_000;
 
 /// A look on the scene of `own`, before a camera that shows all of it. None if the scene of the
 /// look cannot be measured.
-fn landed(look: &PresetFile, own: &PresetFile, scene: &Scene) -> Option<PresetFile> {
+fn land_look(look: &PresetFile, own: &PresetFile, scene: &Scene) -> Option<PresetFile> {
     let fit = match look.needs_fit() {
         true => look.fit_to(
             own,

@@ -5,15 +5,23 @@ use std::sync::{
     atomic::{AtomicBool, Ordering},
 };
 
-use eframe::egui;
-
 use super::{
-    Done, Jobs, background, caught, caught_future, giving_back, landed, memory, small_picture,
+    Done, Jobs, background, caught, caught_future, done,
+    finished::{
+        take_effect_picture, take_golden, take_link, take_precision, take_thumbnail,
+        take_thumbnail_on, take_trade,
+    },
+    giving_back, land_look, memory, small_picture,
 };
 use crate::{
     app::{
         files::scene_loader::SceneKey,
-        picture::{effect_picture::EffectPicture, golden_check, precision, review, screen::Inputs},
+        picture::{
+            apply::{take_blessed, take_reviewed},
+            effect_picture::EffectPicture,
+            golden_check, precision, review,
+            screen::Inputs,
+        },
         trade::{
             measure,
             request::{Progress, Request},
@@ -34,7 +42,7 @@ impl Jobs {
             let measured = caught("measuring the f32 error", || {
                 giving_back(|| background::compute(measure)).map(|measured| measured.map(Box::new))
             });
-            Done::Precision(Box::new(inputs), measured)
+            done(move |app| take_precision(app, inputs, measured))
         });
     }
 
@@ -56,7 +64,7 @@ impl Jobs {
             };
             let measured = caught_future("measuring the trade", work).await;
             memory::give_back();
-            Done::Trade(measured)
+            done(move |app| take_trade(app, measured))
         });
     }
 
@@ -66,7 +74,7 @@ impl Jobs {
             let checked = caught("drawing the golden", || {
                 Ok(golden_check::check(&preset_file))
             });
-            Done::Golden(number, checked.ok().flatten())
+            done(move |app| take_golden(app, number, checked.ok().flatten()))
         });
     }
 
@@ -74,7 +82,7 @@ impl Jobs {
     pub fn draw_golden(&self, name: String, folders: Folders) {
         self.spawn_oracle("review", move || {
             let drawn = caught("drawing a golden", || review::draw(&name, &folders));
-            Done::Reviewed(name, drawn)
+            done(move |app| take_reviewed(&mut app.state, &name, drawn))
         });
     }
 
@@ -84,7 +92,7 @@ impl Jobs {
             let blessed = caught("drawing a golden", || {
                 review::bless(&name, &folders, &shown)
             });
-            Done::Blessed(name, blessed)
+            done(move |app| take_blessed(&mut app.state, &name, blessed))
         });
     }
 
@@ -95,7 +103,7 @@ impl Jobs {
                 link::bits(&preset_file.preset, &scene)
             });
             let address = link::address(&page, &line, bits.as_deref().ok());
-            Done::Link(address, bits.err())
+            done(move |app| take_link(app, address, bits.err()))
         });
     }
 
@@ -106,7 +114,7 @@ impl Jobs {
             let image = caught("drawing a thumbnail", || {
                 thumbnail(&preset_file, size).ok_or_else(String::new)
             });
-            Done::Thumbnail(preset_file.id, image.ok())
+            done(move |app| take_thumbnail(app, &preset_file.id, image.ok()))
         });
     }
 
@@ -122,7 +130,8 @@ impl Jobs {
             let image = caught("drawing a thumbnail", || {
                 thumbnail_on(&look, &own, &scene, size).ok_or_else(String::new)
             });
-            Done::ThumbnailOn(SceneKey::of(&own), look.id, image.ok())
+            let key = SceneKey::of(&own);
+            done(move |app| take_thumbnail_on(app, &key, &look.id, image.ok()))
         });
     }
 
@@ -143,7 +152,7 @@ impl Jobs {
                 false => thumbnail_of(&preset, &scene, size).ok_or_else(String::new),
             };
             let image = caught("drawing a picture of an effect", draw).ok();
-            Done::EffectPicture(effect, image)
+            done(move |app| take_effect_picture(app, &effect, image))
         });
     }
 
@@ -164,7 +173,7 @@ fn thumbnail_on(
     scene: &Scene,
     size: [u32; 2],
 ) -> Option<egui::ColorImage> {
-    let preset = landed(look, own, scene)?.preset;
+    let preset = land_look(look, own, scene)?.preset;
     if preset.ground == own.preset.ground && preset.room == own.preset.room {
         return thumbnail_of(&preset, scene, size);
     }

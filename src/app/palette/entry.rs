@@ -5,10 +5,10 @@ use std::sync::Arc;
 use crate::{
     accuracy::Axis,
     app::{
-        files::command::FileCommand,
+        editing::apply::set_text,
         shell::{
             action::Action,
-            command::{Command, Edit, SettingsCommand},
+            command::{Commands, Edit},
             log::Level,
         },
         widgets::theme::ThemeChoice,
@@ -137,27 +137,34 @@ impl Entry {
     }
 }
 
-/// The commands that carry out `choice`.
-pub fn commands(choice: Choice) -> Vec<Command> {
+/// Carries out `choice`.
+pub fn perform(choice: Choice, commands: &Commands) {
     match choice {
-        Choice::Perform(action) => vec![Command::Perform(action)],
-        Choice::Enable(effect) => vec![
-            Command::Edit(Edit::Enable(effect.clone())),
-            Command::Reveal(effect.name.clone()),
-        ],
-        Choice::Disable(effect) => vec![Command::Edit(Edit::Disable(effect))],
-        Choice::Replace(other, effect) => vec![
-            Command::Edit(Edit::Replace(other, effect.clone())),
-            Command::Reveal(effect.name.clone()),
-        ],
-        Choice::Reveal(path) => vec![Command::Reveal(path)],
-        Choice::Offer(effect) => vec![Command::AddEffect(effect.name.clone())],
-        Choice::GoTo(camera) => vec![Command::Edit(Edit::Camera(Some(camera)))],
-        Choice::Theme(theme) => vec![Command::Settings(SettingsCommand::Theme(theme))],
-        Choice::Set(path, value) => vec![Command::SetText(path, value)],
-        Choice::Open(id) => vec![Command::File(FileCommand::Open(id))],
-        Choice::Builtin(name) => vec![Command::File(FileCommand::Open(format!("builtin:{name}")))],
-        Choice::Refuse(reason) => vec![Command::Notify(Level::Warning, reason)],
+        Choice::Perform(action) => commands.perform(action),
+        Choice::Enable(effect) => {
+            commands.edit(Edit::Enable(effect.clone()));
+            commands.reveal(effect.name.clone());
+        }
+        Choice::Disable(effect) => commands.edit(Edit::Disable(effect)),
+        Choice::Replace(other, effect) => {
+            commands.edit(Edit::Replace(other, effect.clone()));
+            commands.reveal(effect.name.clone());
+        }
+        Choice::Reveal(path) => commands.reveal(path),
+        Choice::Offer(effect) => commands.run(move |app| {
+            let browser = &mut app.panels.browser.effects;
+            browser.begin_adding(effect.name.clone());
+        }),
+        Choice::GoTo(camera) => commands.edit(Edit::Camera(Some(camera))),
+        Choice::Theme(theme) => {
+            commands.run(move |app| app.change_settings(|settings| settings.theme = theme));
+        }
+        Choice::Set(path, value) => {
+            commands.step(move |app| set_text(&mut app.state, &path, &value));
+        }
+        Choice::Open(id) => commands.open(id),
+        Choice::Builtin(name) => commands.open(format!("builtin:{name}")),
+        Choice::Refuse(reason) => commands.notify(Level::Warning, reason),
     }
 }
 

@@ -7,6 +7,6 @@ mod rank;
 
 pub use self::{
     entries::entries,
-    entry::{Choice, Entry, commands},
+    entry::{Choice, Entry, perform},
     rank::{MAX_LISTED, rank},
 };

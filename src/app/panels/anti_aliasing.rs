@@ -1,15 +1,13 @@
 //! The menu of anti-aliasing in the top bar.
 
-use eframe::egui::{ComboBox, RichText, Ui};
+use egui::{ComboBox, RichText, Ui};
 
 use crate::{
     accuracy::{AXES, Axis, AxisOption, PinnedOptions, RenderScale},
     app::{
+        editing::apply::pin_options,
         picture::anti_aliasing::{AUTOMATIC, CHOICES, name},
-        shell::{
-            command::{Command, Commands},
-            state::State,
-        },
+        shell::{command::Commands, state::State},
     },
 };
 
@@ -39,12 +37,13 @@ pub fn anti_aliasing_ui(ui: &mut Ui, state: &State, commands: &Commands) {
             .clicked()
             && pinned.is_some()
         {
-            commands.send(Command::PinOptions(PinnedOptions::default(), vec![AXIS]));
+            commands.step(|app| pin_options(&mut app.state, &PinnedOptions::default(), &[AXIS]));
         }
         for (option, name) in CHOICES {
             if ui.selectable_label(pinned == Some(option), name).clicked() && pinned != Some(option)
             {
-                commands.send(Command::PinOptions(PinnedOptions::of(option), vec![AXIS]));
+                let pins = PinnedOptions::of(option);
+                commands.step(move |app| pin_options(&mut app.state, &pins, &[AXIS]));
             }
         }
     });

@@ -7,20 +7,17 @@ use std::{
     time::Duration,
 };
 
-use eframe::egui::{self, Color32, RichText, Ui};
+use egui::{self, Color32, RichText, Ui};
 use pollster::FutureExt as _;
 use web_time::Instant;
 
+use crate::app::panels::panel::Panel;
 use crate::{
     app::{
-        jobs::{computing::Computing, memory},
-        shell::{
-            command::{Command, Commands},
-            log::Level,
-            state::State,
-        },
+        jobs::{Computing, memory},
+        shell::{command::Commands, log::Level, state::State},
         trade::pace::about,
-        widgets::{panel::Panel, theme},
+        widgets::theme,
     },
     extremes::{Cases, Outcome, Report, names},
     gpu::{Gpu, Renderer, device::AdapterChoice},
@@ -217,18 +214,16 @@ impl Extremes {
             .filter(|report| report.outcome.is_failure())
         {
             let why = report.outcome.why().unwrap_or_default();
-            commands.send(Command::Log(
-                Level::Error,
-                format!("extreme case {}: {why}", report.name),
-            ));
+            let text = format!("extreme case {}: {why}", report.name);
+            commands.run(|app| app.state.log.add(Level::Error, text));
         }
-        commands.send(match &progress.error {
-            Some(error) => Command::Notify(Level::Error, format!("Extreme cases: {error}")),
-            None => Command::Notify(
-                Level::Info,
-                format!("Extreme cases: {}", summary(&progress.reports)),
-            ),
-        });
+        match &progress.error {
+            Some(error) => commands.notify(Level::Error, format!("Extreme cases: {error}")),
+            None => {
+                let text = format!("Extreme cases: {}", summary(&progress.reports));
+                commands.notify(Level::Info, text);
+            }
+        }
     }
 
     fn start_ui(&mut self, ui: &mut Ui, state: &State) {

@@ -1,16 +1,17 @@
 //! The log panel, and the toasts over the picture.
 
-use eframe::egui::{self, Rect, RichText, Ui};
+use egui::{self, Rect, RichText, Ui};
 
+use crate::app::panels::panel::Panel;
 use crate::app::{
     shell::{
-        command::{Command, Commands},
+        command::Commands,
         log::{Entry, Log, times},
         state::State,
     },
     widgets::{
         icons::{Icon, icon_button},
-        panel::{Panel, at_right},
+        panel::at_right,
         theme,
     },
 };
@@ -25,7 +26,7 @@ impl Panel for LogPanel {
             ui.label(theme::heading("Log"));
             at_right(ui, |ui| {
                 if icon_button(ui, Icon::Cross, "Clear the log").clicked() {
-                    commands.send(Command::ClearLog);
+                    commands.run(|app| app.state.log.clear());
                 }
                 if ui
                     .small_button("Copy")

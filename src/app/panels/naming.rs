@@ -1,19 +1,13 @@
 //! The dialog that asks for a name: of a preset, of saved values of an effect, or of a bookmark.
 
-use eframe::egui::Ui;
+use egui::Ui;
 
 use super::dialogs::buttons::buttons;
+use crate::app::panels::panel::Panel;
 use crate::app::{
-    files::command::{LibraryCommand, Naming},
-    shell::{
-        command::{Command, Commands},
-        state::State,
-    },
-    widgets::{
-        form::name_ui,
-        panel::{Panel, modal},
-        theme,
-    },
+    files::{command::Naming, library},
+    shell::{command::Commands, state::State},
+    widgets::{form::name_ui, panel::modal, theme},
 };
 
 const WIDTH: f32 = 400.0;
@@ -72,7 +66,7 @@ impl Panel for NameDialog {
         match modal.inner.or(is_closed.then_some(false)) {
             Some(true) if !open.name.trim().is_empty() => {
                 if let Some(Open { naming, name, .. }) = self.0.take() {
-                    commands.send(Command::Library(LibraryCommand::Name(naming, name)));
+                    commands.run(|app| library::use_name(app, naming, name));
                 }
             }
             Some(true) => open.error = Some("Type a name.".into()),

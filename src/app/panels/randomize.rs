@@ -3,10 +3,12 @@
 
 use std::{collections::HashMap, sync::Arc};
 
-use eframe::egui::{self, RichText, Sense, Ui, vec2};
+use egui::{self, RichText, Sense, Ui, vec2};
 
+use crate::app::panels::panel::Panel;
 use crate::{
     app::{
+        editing::apply::recall_seed,
         editing::randomize::Seeded,
         picture::{
             cells::{self, CellOf, CellResult, Cells},
@@ -14,11 +16,12 @@ use crate::{
         },
         shell::{
             action::Action,
-            command::{Command, Commands},
+            command::{Commands, Parameter},
             state::State,
         },
         widgets::{
-            panel::{Panel, describe_chosen, main_button, picture_ui, plate, window},
+            fields::label,
+            panel::{describe_chosen, main_button, picture_ui, plate, window},
             theme,
         },
     },
@@ -53,7 +56,7 @@ impl RandomizePanel {
     }
 
     /// Takes the picture of a seed.
-    pub fn arrived(&mut self, ctx: &egui::Context, seed: u32, picture: CellResult) {
+    pub fn take_picture(&mut self, ctx: &egui::Context, seed: u32, picture: CellResult) {
         if self.drawing == Some(seed) {
             self.drawing = None;
         }
@@ -87,10 +90,11 @@ impl RandomizePanel {
         };
         self.drawing = Some(next.seed);
         let cells = vec![(CellOf::Seed(next.seed), inputs(state, requested, next))];
-        commands.send(Command::DrawCells(Cells {
+        let cells = Cells {
             cells,
             is_canceled: Arc::default(),
-        }));
+        };
+        commands.run(|app| app.state.draw_cells(cells));
     }
 }
 
@@ -166,10 +170,18 @@ fn controls_ui(ui: &mut Ui, state: &State, commands: &Commands) {
         let hint = "How far a value may go from where it is, in percent of its slider. At 100 % it may go anywhere on it.";
         let slider = ui.add(slider).on_hover_text(hint);
         if slider.accessible_name("Vary by percent").changed() {
-            commands.send(Command::VaryBy(percent));
+            commands.run(move |app| app.state.session.randomizer.vary_percent = percent.clamp(1.0, 100.0));
         }
     });
     ui.add_space(theme::HALF);
+}
+
+/// Keeps a parameter as it is when the effects are randomized, or lets it vary.
+fn lock(commands: &Commands, (effect, field): Parameter, is_locked: bool) {
+    commands.run(move |app| {
+        let randomizer = &mut app.state.session.randomizer;
+        randomizer.lock(&effect, &field, is_locked);
+    });
 }
 
 /// A box for each parameter of an effect: with a mark, it varies.
@@ -199,12 +211,9 @@ fn locks_ui(ui: &mut Ui, state: &State, commands: &Commands, enabled: &EnabledEf
             .accessible_name(format!("Vary {}", effect.name))
             .clicked()
         {
-            shown.iter().for_each(|field| {
-                commands.send(Command::Lock(
-                    (effect.clone(), (*field).clone()),
-                    !all_locked,
-                ))
-            });
+            shown
+                .iter()
+                .for_each(|field| lock(commands, (effect.clone(), (*field).clone()), !all_locked));
         }
         for field in shown {
             let is_animated = state
@@ -214,7 +223,7 @@ fn locks_ui(ui: &mut Ui, state: &State, commands: &Commands, enabled: &EnabledEf
                 .get(&effect.name, &field.name)
                 .is_some();
             let mut varies = !seeds.is_locked(effect, field) && !is_animated;
-            let name = RichText::new(field.name.replace('_', " ")).size(12.0);
+            let name = RichText::new(label(&field.name, &field.unit)).size(12.0);
             let response = ui.add_enabled(!is_animated, egui::Checkbox::new(&mut varies, name));
             let response = response
                 .on_hover_text(&field.doc)
@@ -223,7 +232,7 @@ fn locks_ui(ui: &mut Ui, state: &State, commands: &Commands, enabled: &EnabledEf
                 .accessible_name(format!("Vary {}.{}", effect.name, field.name))
                 .clicked()
             {
-                commands.send(Command::Lock((effect.clone(), field.clone()), !varies));
+                lock(commands, (effect.clone(), field.clone()), !varies);
             }
         }
     });
@@ -245,7 +254,8 @@ impl RandomizePanel {
             for Seeded { seed, stack } in state.session.randomizer.seeds() {
                 let is_current = state.session.preset().stack.0 == stack.0;
                 if seed_ui(ui, *seed, self.pictures.get(seed), is_current).clicked() {
-                    commands.send(Command::RecallSeed(*seed));
+                    let seed = *seed;
+                    commands.step(move |app| recall_seed(&mut app.state, seed));
                 }
             }
         });

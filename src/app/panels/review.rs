@@ -3,20 +3,18 @@
 
 use std::sync::Arc;
 
-use eframe::egui::{self, Color32, Pos2, Rect, RichText, Sense, Ui, pos2, vec2};
+use egui::{self, Color32, Pos2, Rect, RichText, Sense, Ui, pos2, vec2};
 
 use super::viewport::compare_ui::divider_ui;
+use crate::app::panels::panel::{Panel, performs};
 use crate::{
     app::{
-        picture::review::{Drawn, Entry, Review, ReviewCommand},
-        shell::{
-            action::Action,
-            command::{Command, Commands},
-            state::State,
-        },
+        picture::apply::begin_review,
+        picture::review::{Drawn, Entry, Review},
+        shell::{action::Action, command::Commands, state::State},
         widgets::{
             form::modes_ui,
-            panel::{Panel, describe, main_button, performs, window},
+            panel::{describe, main_button, window},
             theme,
         },
     },
@@ -209,11 +207,10 @@ impl Textures {
 
 /// The button that looks for differences, and how far it is.
 fn begin_ui(ui: &mut Ui, review: &Review, commands: &Commands) {
-    let send = |command| commands.send(Command::Review(command));
     ui.horizontal(|ui| match review.progress() {
         Some([done, planned]) => {
             if ui.button("Stop looking").clicked() {
-                send(ReviewCommand::Stop);
+                commands.run(|app| app.state.picture.review.stop());
             }
             ui.label(theme::weak(format!("{done} of {planned} presets drawn")));
         }
@@ -221,7 +218,7 @@ fn begin_ui(ui: &mut Ui, review: &Review, commands: &Commands) {
             let button = main_button("Look for differences");
             let hint = "The oracle draws every preset that has a golden, beside the window";
             if ui.add(button).on_hover_text(hint).clicked() {
-                send(ReviewCommand::Begin);
+                commands.run(begin_review);
             }
             match (review.entries().is_empty(), review.is_complete()) {
                 (true, true) => {
@@ -258,7 +255,7 @@ fn queue_ui(ui: &mut Ui, review: &Review, commands: &Commands, height: f32) {
                     RichText::new(&*name).color(color),
                 );
                 if ui.add(label.truncate()).clicked() {
-                    commands.send(Command::Review(ReviewCommand::Show(index)));
+                    commands.run(move |app| app.state.picture.review.show(index));
                 }
             }
         });

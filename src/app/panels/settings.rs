@@ -1,19 +1,24 @@
 //! The settings window: theme, size of texts and controls, and the cheat sheet: every action with
 //! its keys, which can be changed, and its present value.
 
-use eframe::egui::{self, Button, Event, Key, Label, RichText, Ui, vec2};
+use egui::{self, Button, Event, Key, Label, RichText, Ui, vec2};
 
+use crate::app::panels::panel::{Panel, performs};
 use crate::app::{
-    settings::{SCALES, keymap},
+    settings::{
+        SCALES,
+        keymap::{self, Keymap},
+    },
     shell::{
         action::{Action, POINTER, actions, shortcut_text},
-        command::{Command, Commands, SettingsCommand, Toggle},
+        command::Commands,
+        log::Level,
         state::State,
     },
     widgets::{
-        form::{field_ui, form_ui, is_entered, text_ui, words_ui},
+        form::{field_ui, form_ui, is_entered, search_ui, words_ui},
         icons::{Icon, icon_button},
-        panel::{Panel, at_right, centered, performs},
+        panel::{at_right, centered_window},
         theme::{self, ThemeChoice},
     },
 };
@@ -32,8 +37,16 @@ impl SettingsWindow {
         self.binding.is_some()
     }
 
-    fn send(commands: &Commands, command: SettingsCommand) {
-        commands.send(Command::Settings(command));
+    /// Changes the keys; a key that belongs to another action is refused.
+    fn change(
+        commands: &Commands,
+        change: impl FnOnce(&mut Keymap) -> Result<(), String> + 'static,
+    ) {
+        commands.run(|app| {
+            if let Err(refused) = change(&mut app.state.settings.keys) {
+                app.notify(Level::Warning, refused);
+            }
+        });
     }
 
     /// Takes the key that is pressed for the action that waits for one. Escape ends the waiting.
@@ -58,10 +71,8 @@ impl SettingsWindow {
         };
         self.binding = None;
         if key != Key::Escape {
-            Self::send(
-                commands,
-                SettingsCommand::Bind(action, Some(keymap::pressed(key, modifiers))),
-            );
+            let shortcut = keymap::pressed(key, modifiers);
+            Self::change(commands, move |keys| keys.bind(action, shortcut));
         }
     }
 
@@ -73,12 +84,11 @@ impl SettingsWindow {
                 let reset = ui.button("Reset all");
                 let hint = "Give every action its own keys again";
                 if reset.on_hover_text(hint).clicked() {
-                    Self::send(commands, SettingsCommand::ResetAllKeys);
+                    commands.run(|app| app.state.settings.keys.reset_all());
                 }
             });
         });
-        let name = "Search actions and keys";
-        let field = text_ui(ui, name, name, &mut self.search);
+        let field = search_ui(ui, &mut self.search, "Search actions and keys");
         if self.binding.is_none() {
             // Keys that are typed while the window is open go into the search.
             is_entered(ui, &field);
@@ -87,7 +97,9 @@ impl SettingsWindow {
         let search = self.search.to_lowercase();
         let is_found =
             |label: &str, how: &str| format!("{label} {how}").to_lowercase().contains(&search);
-        let rows = egui::ScrollArea::vertical().max_height(height);
+        let rows = egui::ScrollArea::vertical()
+            .max_height(height)
+            .min_scrolled_height(height);
         rows.auto_shrink([false, false]).show(ui, |ui| {
             let mut count = 0;
             for (action, label, _) in actions() {
@@ -135,7 +147,7 @@ impl SettingsWindow {
             (false, keys) => (keys, theme::text_strong()),
         };
         let button = Button::new(RichText::new(text).monospace().color(color))
-            .min_size(vec2(140.0, theme::ROW - 2.0))
+            .min_size(vec2(170.0, theme::ROW - 2.0))
             .selected(is_waiting);
         let button = ui
             .add(button)
@@ -148,12 +160,12 @@ impl SettingsWindow {
             icon_button(ui, Icon::Cross, &format!("No key for {label}"))
         });
         if clear.inner.clicked() {
-            Self::send(commands, SettingsCommand::Bind(action, None));
+            commands.run(move |app| app.state.settings.keys.clear(action));
         }
         if state.settings.keys.is_bound(action)
             && icon_button(ui, Icon::Reset, &format!("Reset keys of {label}")).clicked()
         {
-            Self::send(commands, SettingsCommand::ResetKeys(action));
+            Self::change(commands, move |keys| keys.reset(action));
         }
         if let Some(value) = value_text(action, state) {
             at_right(ui, |ui| ui.label(theme::weak(value)));
@@ -170,14 +182,15 @@ impl Panel for SettingsWindow {
         self.take_key(ui, commands);
         let area = ui.ctx().content_rect();
         let mut is_open = true;
-        centered(ui.ctx(), "Settings", &mut is_open).show(ui.ctx(), |ui| {
+        centered_window(ui.ctx(), "Settings", &mut is_open).show(ui.ctx(), |ui| {
             ui.set_width(560.0f32.min(area.width() - 48.0));
             form_ui(ui, "settings", |ui| {
                 field_ui(ui, "Theme", "", |ui| {
                     let mut theme = state.settings.theme;
                     let themes = ThemeChoice::ALL.map(|choice| (choice, choice.label(), ""));
                     if words_ui(ui, "", &mut theme, themes) {
-                        Self::send(commands, SettingsCommand::Theme(theme));
+                        commands
+                            .run(move |app| app.change_settings(|settings| settings.theme = theme));
                     }
                 });
                 field_ui(ui, "Texts and controls", "", |ui| {
@@ -188,10 +201,8 @@ impl Panel for SettingsWindow {
             let height = (area.height() - 260.0).clamp(120.0, 480.0);
             self.keys_ui(ui, state, commands, height);
         });
-        // The key that opens it closes it, too; the search would keep it.
-        is_open &= self.takes_key() || !ui.input(|i| i.key_pressed(Key::F1));
         if !is_open {
-            commands.send(Command::Toggle(Toggle::Settings));
+            commands.perform(Action::Settings);
         }
     }
 }
@@ -210,7 +221,7 @@ fn scale_ui(ui: &mut Ui, scale: f32, commands: &Commands) {
     for (text, action, is_enabled) in [
         ("\u{2212}", Action::ScaleDown, scale > SCALES[0]),
         ("+", Action::ScaleUp, scale < SCALES[1]),
-        ("100 %", Action::ScaleReset, true),
+        ("Reset", Action::ScaleReset, scale != 1.0),
     ] {
         if action == Action::ScaleUp {
             let percent = Label::new(format!("{:.0} %", scale * 100.0));

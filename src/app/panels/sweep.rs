@@ -6,21 +6,20 @@ use std::sync::{
     atomic::{AtomicBool, Ordering},
 };
 
-use eframe::egui::{self, RichText, Sense, Ui, vec2};
+use egui::{self, RichText, Sense, Ui, vec2};
 
+use crate::app::panels::panel::Panel;
 use crate::{
     app::{
+        editing::apply::set_values,
         picture::{
             cells::{self, CellOf, CellResult, Cells},
             screen::Inputs,
         },
-        shell::{
-            command::{Command, Commands},
-            state::State,
-        },
+        shell::{command::Commands, state::State},
         widgets::{
-            form::{menu_ui, number_ui},
-            panel::{Panel, describe, main_button, picture_ui, window},
+            form::{field_ui, form_ui, menu_ui, number_ui},
+            panel::{describe, main_button, picture_ui, window},
             theme,
         },
     },
@@ -159,7 +158,7 @@ impl SweepPanel {
     }
 
     /// Takes a picture.
-    pub fn arrived(
+    pub fn take_picture(
         &mut self,
         ctx: &egui::Context,
         (number, index): (u64, usize),
@@ -226,10 +225,11 @@ impl SweepPanel {
         };
         let is_canceled = Arc::new(AtomicBool::new(false));
         let cells = sheet.cells.iter().enumerate().map(cell).collect();
-        commands.send(Command::DrawCells(Cells {
+        let cells = Cells {
             cells,
             is_canceled: is_canceled.clone(),
-        }));
+        };
+        commands.run(|app| app.state.draw_cells(cells));
         let captions = sheet.cells.iter().map(|cell| DrawnCell {
             caption: cell.caption(),
             values: cell.values.clone(),
@@ -269,9 +269,11 @@ impl SweepPanel {
             ));
             return;
         }
-        for (index, varied) in self.varied.iter_mut().enumerate() {
-            ui.horizontal(|ui| varied_ui(ui, index, varied, &known));
-        }
+        form_ui(ui, "varied", |ui| {
+            for (name, varied) in VARIED.into_iter().zip(&mut self.varied) {
+                field_ui(ui, name, "", |ui| varied_ui(ui, name, varied, &known));
+            }
+        });
         ui.horizontal(|ui| {
             let requested = state.picture.screen.requested();
             let button = main_button("Draw the sheet");
@@ -300,20 +302,16 @@ impl SweepPanel {
     }
 }
 
+/// Where the first and the second parameter change.
+const VARIED: [&str; 2] = ["along the rows", "from row to row"];
+
 /// The choice of a parameter, with its ends and the number of steps.
-fn varied_ui(
-    ui: &mut Ui,
-    index: usize,
-    varied: &mut Option<Varied>,
-    known: &[(String, Arc<Field>)],
-) {
-    let name = ["along the rows", "from row to row"][index];
-    ui.add_sized([96.0, theme::ROW], egui::Label::new(theme::weak(name)));
+fn varied_ui(ui: &mut Ui, name: &str, varied: &mut Option<Varied>, known: &[(String, Arc<Field>)]) {
     let now = varied
         .as_ref()
         .map_or("none", |varied| &varied.path)
         .to_owned();
-    let none = (index > 0).then(|| (String::new(), "none".to_owned(), ""));
+    let none = (name != VARIED[0]).then(|| (String::new(), "none".to_owned(), ""));
     let paths = known
         .iter()
         .map(|(path, _)| (path.clone(), path.clone(), ""));
@@ -407,7 +405,8 @@ fn sheet_ui(ui: &mut Ui, drawn: &Drawn, state: &State, commands: &Commands, heig
                 .show(ui, |ui| {
                     for (index, cell) in drawn.cells.iter().enumerate() {
                         if cell_ui(ui, cell, vec2(width, width * aspect)).clicked() {
-                            commands.send(Command::SetValues(cell.values.clone()));
+                            let values = cell.values.clone();
+                            commands.step(move |app| set_values(&mut app.state, &values));
                         }
                         if (index + 1) % drawn.columns == 0 {
                             ui.end_row();

@@ -2,26 +2,22 @@
 
 use std::path::Path;
 
-use eframe::egui::{self, Align, Layout, RichText, Sense, Ui, vec2};
+use egui::{self, Align, Layout, RichText, Sense, Ui, vec2};
 
 use super::anti_aliasing::anti_aliasing_ui;
+use crate::app::panels::panel::Panel;
 use crate::app::{
-    files::command::FileCommand,
     picture::{
         measured::{error_line, time_line},
         verification::Progress,
     },
-    shell::{
-        action::Action,
-        command::{Command, Commands, SettingsCommand},
-        state::State,
-    },
+    shell::{action::Action, command::Commands, state::State},
     trade::pace::about,
     widgets::{
         fields::dot,
         form::words_ui,
         icons::{Icon, icon_button},
-        panel::{Panel, at_right, entry},
+        panel::{at_right, entry},
         theme::{self, ThemeChoice},
     },
 };
@@ -190,9 +186,7 @@ fn recents_ui(ui: &mut Ui, state: &State, commands: &Commands) {
             .accessible_name(format!("Recent {name}"))
             .clicked()
         {
-            commands.send(Command::File(FileCommand::Open(
-                path.to_string_lossy().into_owned(),
-            )));
+            commands.open(path.to_string_lossy().into_owned());
             ui.close();
         }
     }
@@ -210,7 +204,7 @@ fn looks_ui(ui: &mut Ui, chosen: ThemeChoice, commands: &Commands) {
         let themes = ThemeChoice::ALL.map(|choice| (choice, choice.label(), ""));
         let mut theme = chosen;
         if words_ui(ui, "", &mut theme, themes) {
-            commands.send(Command::Settings(SettingsCommand::Theme(theme)));
+            commands.run(move |app| app.change_settings(|settings| settings.theme = theme));
             ui.close();
         }
         ui.separator();
@@ -348,7 +342,7 @@ fn verifying_ui(ui: &mut Ui, progress: &Progress, commands: &Commands) {
         .on_hover_text("Stop verifying")
         .accessible_name("Cancel verifying");
     if cancel.clicked() {
-        commands.send(Command::CancelVerify);
+        commands.run(|app| app.state.picture.verification.cancel());
     }
     let text = RichText::new(format!("{} left", about(progress.left_s))).size(11.0);
     let bar = egui::ProgressBar::new(progress.fraction as f32)

@@ -1,40 +1,29 @@
 //! Carries out commands to the picture.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 
 use super::{
-    command::{Marker, Measured, ViewCommand},
-    review::ReviewCommand,
+    command::{Marker, Measured},
+    findings::Findings,
+    measured::error_text,
+    review::{self, Review},
     screen::Inputs,
+    tier_times,
+    verification::Verdict,
 };
-use crate::app::{
-    files::scene_loader::SceneKey,
-    panels::Panels,
-    shell::{action::Action, log::Level, state::State},
+use crate::{
+    app::{
+        App,
+        files::scene_loader::SceneKey,
+        shell::{action::Action, log::Level, state::State},
+    },
+    work::Work,
 };
-
-pub fn view(state: &mut State, panels: &mut Panels, command: ViewCommand) {
-    match command {
-        ViewCommand::ToggleOverlays => state.picture.overlays.toggle(),
-        ViewCommand::ShowOverlay(overlay, on) => state.picture.overlays.set(overlay, on),
-        ViewCommand::NextPixel => step_pixel(state, true),
-        ViewCommand::PreviousPixel => step_pixel(state, false),
-        ViewCommand::OverlayGain(gain) => state.picture.overlays.gain = gain,
-        ViewCommand::CycleCompare => panels.viewport.compare.cycle(),
-        ViewCommand::FlipCompare => panels.viewport.compare.flip(),
-        ViewCommand::Mark(marker) => {
-            state.picture.marker = marker.map(|marker| *marker);
-            state.picture.probed = None;
-        }
-        ViewCommand::Probe(pixel) => look_into(state, pixel, ""),
-        ViewCommand::EndProbe => (state.picture.marker, state.picture.probed) = (None, None),
-        ViewCommand::Measure(point) => measure(state, point),
-        ViewCommand::Pick(picking) => state.picture.picking = picking,
-    }
-}
 
 /// Measures from a point of the scene that is shown, or to it; a third point begins again.
-fn measure(state: &mut State, point: Option<DVec3>) {
+pub fn measure(state: &mut State, point: Option<DVec3>) {
     let points = match state.measured_points() {
         [from] => vec![*from],
         _ => Vec::new(),
@@ -45,8 +34,13 @@ fn measure(state: &mut State, point: Option<DVec3>) {
     });
 }
 
+/// Marks a place in the picture; none removes the mark, and what was told of it.
+pub fn mark(state: &mut State, marker: Option<Marker>) {
+    (state.picture.marker, state.picture.probed) = (marker, None);
+}
+
 /// Marks a pixel of the judged picture, with `place` before what is known of it, and looks into it.
-fn look_into(state: &mut State, pixel: [u32; 2], place: &str) {
+pub fn look_into(state: &mut State, pixel: [u32; 2], place: &str) {
     let (Some(findings), Some(of)) = (state.picture.findings(), state.picture.screen.requested())
     else {
         return;
@@ -71,7 +65,7 @@ fn look_into(state: &mut State, pixel: [u32; 2], place: &str) {
 
 /// Goes to the next pixel that an overlay of errors or ties paints, in reading order, or to the
 /// previous one; behind the last comes the first.
-fn step_pixel(state: &mut State, is_forward: bool) {
+pub fn step_pixel(state: &mut State, is_forward: bool) {
     if !state.picture.overlays.is_any() {
         state.picture.overlays.toggle();
     }
@@ -110,27 +104,88 @@ fn step_pixel(state: &mut State, is_forward: bool) {
     look_into(state, [i % width, i / width].map(|at| at as u32), &place);
 }
 
-/// Carries out a command to the review, and draws what it needs next.
-pub fn review(state: &mut State, panels: &Panels, command: ReviewCommand) {
-    let review = &mut state.picture.review;
-    match command {
-        ReviewCommand::Begin => review.begin(panels.browser.with_goldens()),
-        ReviewCommand::Stop => review.stop(),
-        ReviewCommand::Show(index) => review.show(index),
-        ReviewCommand::Next => review.next(),
-        ReviewCommand::Reject => review.reject(),
-        ReviewCommand::Accept => accept(state),
+/// Begins the review with every preset of the gallery that has a golden.
+pub fn begin_review(app: &mut App) {
+    let presets = app.panels.browser.with_goldens();
+    app.state.picture.review.begin(presets);
+    draw_for_review(&mut app.state);
+}
+
+/// Changes the review, and draws what it needs next.
+pub fn review(state: &mut State, change: impl FnOnce(&mut Review)) {
+    change(&mut state.picture.review);
+    draw_for_review(state);
+}
+
+/// Makes the shown picture the golden.
+pub fn accept_golden(state: &mut State) {
+    match state.picture.review.accept() {
+        Some((name, drawn)) => {
+            let folders = state.files.folders.clone();
+            state.jobs.bless(name, folders, drawn);
+        }
+        None => {
+            let text = "The review shows no picture that can be accepted";
+            state.notify(Level::Info, text);
+        }
     }
     draw_for_review(state);
 }
 
-/// Writes the shown picture as a golden.
-fn accept(state: &mut State) {
-    let Some((name, drawn)) = state.picture.review.accept() else {
-        let text = "The review shows no picture that can be accepted";
-        return state.notify(Level::Info, text);
-    };
-    state.jobs.bless(name, state.files.folders.clone(), drawn);
+/// Takes a preset of the review beside its golden; none if they are the same.
+pub fn take_reviewed(
+    state: &mut State,
+    name: &str,
+    drawn: Result<Option<Arc<review::Drawn>>, String>,
+) {
+    state.picture.review.drawn(name, drawn);
+    draw_for_review(state);
+}
+
+/// Takes how a golden was accepted.
+pub fn take_blessed(state: &mut State, name: &str, outcome: Result<(), String>) {
+    state.picture.review.blessed(name, outcome.is_ok());
+    match outcome {
+        Ok(()) => state.notify(Level::Info, format!("Accepted the golden of {name}")),
+        Err(error) => state.notify(Level::Error, error),
+    }
+    draw_for_review(state);
+}
+
+/// Takes the verdict of the oracle on `of`: for A, for B, or for both if they are the same picture.
+/// None if the judgement was canceled; then overlays do not begin it again.
+pub fn take_verdict(
+    app: &mut App,
+    of: Inputs,
+    work: &Arc<Work>,
+    findings: Result<Option<Box<Findings>>, String>,
+) {
+    let state = &mut app.state;
+    if !state.picture.verification.ended(work) {
+        return;
+    }
+    match findings {
+        Ok(None) => state.picture.verification.fail(of),
+        Ok(Some(findings)) => {
+            let (title, text) = (state.session.title(), error_text(&findings));
+            let text = format!("verified {title}: {text}");
+            state.log.add(Level::Info, text);
+            let verdict = Verdict {
+                of,
+                findings: findings.into(),
+            };
+            tier_times::judge(state, &verdict);
+            if !app.panels.viewport.compare.take_verdict(&verdict)
+                || state.picture.screen.requested() == Some(&verdict.of)
+            {
+                state.picture.verification.set(verdict);
+            }
+        }
+        Err(error) => {
+            state.notify(Level::Error, error);
+            state.picture.verification.fail(of);
+        }
+    }
 }
 
 /// Starts the oracle on the next picture of the review, if it draws none.
@@ -142,15 +197,16 @@ pub fn draw_for_review(state: &mut State) {
 
 /// Starts the oracle on the picture that is shown, and on the one it is compared with. Nothing
 /// while it runs.
-pub fn verify(state: &mut State, panels: &Panels) {
-    if state.picture.verification.is_running() {
+pub fn verify(app: &mut App) {
+    if app.state.picture.verification.is_running() {
         return;
     }
-    verify_shown(state);
-    let compared = panels.viewport.compare.unjudged();
-    if let Some(inputs) = compared.filter(|inputs| Some(inputs) != state.picture.screen.requested())
+    verify_shown(&mut app.state);
+    let compared = app.panels.viewport.compare.unjudged();
+    if let Some(inputs) =
+        compared.filter(|inputs| Some(inputs) != app.state.picture.screen.requested())
     {
-        judge(state, inputs);
+        judge(&mut app.state, inputs);
     }
 }
 

@@ -1,10 +1,10 @@
-//! Commands to the picture: overlays, comparison, and clicks on the model.
+//! What is marked in the picture, and what clicks on the model set.
 
 use std::sync::Arc;
 
 use glam::DVec3;
 
-use super::{overlay::Overlay, screen::Inputs};
+use super::screen::Inputs;
 use crate::{
     app::{editing::preset_edit::Parameter, files::scene_loader::SceneKey},
     effects::Effect,
@@ -56,26 +56,4 @@ pub struct Measured {
     pub of: SceneKey,
     /// One or two, meters before the scene's spin.
     pub points: Vec<DVec3>,
-}
-
-pub enum ViewCommand {
-    ToggleOverlays,
-    ShowOverlay(Overlay, bool),
-    /// Marks the next pixel that the overlays paint, or the previous one, and looks into it.
-    NextPixel,
-    PreviousPixel,
-    OverlayGain(u8),
-    CycleCompare,
-    FlipCompare,
-    /// What the next click on the model sets; none cancels.
-    Pick(Option<Picking>),
-    /// Tells why the pixel in this column and row of the judged picture shows what it shows.
-    Probe([u32; 2]),
-    /// Hides what a probe has told.
-    EndProbe,
-    /// A point of the scene, meters before its spin, that a distance is measured from or to; none
-    /// ends measuring.
-    Measure(Option<DVec3>),
-    /// Marks a place in the picture; none removes the mark.
-    Mark(Option<Box<Marker>>),
 }

@@ -8,23 +8,6 @@ use serde::{Deserialize, Serialize};
 #[cfg(not(target_arch = "wasm32"))]
 pub use native::{bless, draw};
 
-/// What a panel or a key asks of the review.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ReviewCommand {
-    /// Draws every preset of the gallery that has a golden.
-    Begin,
-    /// Draws no more of them.
-    Stop,
-    /// Shows this one of the queue.
-    Show(usize),
-    /// Makes the shown picture the golden.
-    Accept,
-    /// Keeps the golden: the picture is wrong.
-    Reject,
-    /// Shows the next that is neither accepted nor rejected.
-    Next,
-}
-
 /// The oracle's picture of a preset, beside its golden. A page has none.
 #[cfg_attr(target_arch = "wasm32", allow(dead_code))]
 #[derive(Debug, PartialEq)]

@@ -2,14 +2,12 @@
 //! (`session.toml`), both in the folder of the user's configuration.
 
 pub mod browsing;
-mod change;
 pub mod film;
 pub mod keeper;
 pub mod keymap;
 pub mod last_session;
 pub mod recents;
 
-use eframe::egui;
 use serde::{Deserialize, Deserializer, Serialize};
 
 use self::{browsing::Browsing, film::FilmSettings, keymap::Keymap, recents::Recents};
@@ -239,7 +237,7 @@ fn panel_width<'de, D: Deserializer<'de>>(from: D) -> Result<Option<f32>, D::Err
 
 #[cfg(test)]
 mod tests {
-    use eframe::egui::{Key, Modifiers};
+    use egui::{Key, Modifiers};
 
     use super::{
         browsing::{Layout, Sort, Tab},

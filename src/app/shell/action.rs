@@ -2,73 +2,22 @@
 
 use std::cell::RefCell;
 
-use eframe::egui::{Key, KeyboardShortcut, Modifiers};
+use egui::{Key, KeyboardShortcut, Modifiers, ViewportCommand};
 
-/// What a key or a menu entry does.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Action {
-    Open,
-    Save,
-    SaveAs,
-    Export,
-    Film,
-    CopyPreset,
-    PastePreset,
-    CopyLink,
-    ExportAll,
-    Quit,
-    OpenWithScene,
-    ForgetRecents,
-    Undo,
-    Redo,
-    AddEffect,
-    NewEffect,
-    Randomize,
-    RandomizeWindow,
-    Sweep,
-    PreviousPreset,
-    NextPreset,
-    Frame,
-    Front,
-    Side,
-    Top,
-    Orthographic,
-    AddBookmark,
-    NextBookmark,
-    Play,
-    StepBack,
-    StepForward,
-    Rewind,
-    RemoveKey,
-    Verify,
-    Extremes,
-    Review,
-    AcceptGolden,
-    RejectGolden,
-    NextGolden,
-    Overlays,
-    NextPixel,
-    PreviousPixel,
-    Handles,
-    BoundingBox,
-    Axes,
-    Grid,
-    Compare,
-    FlipAb,
-    Trade,
-    Timing,
-    Panels,
-    Timeline,
-    Log,
-    Palette,
-    CheatSheet,
-    Settings,
-    ScaleUp,
-    ScaleDown,
-    ScaleReset,
-}
+use super::apply::{
+    ask_new_effect, copy_link, copy_preset, export_all, toggle_film, toggle_palette, toggle_panels,
+    toggle_review,
+};
+use crate::{
+    app::{
+        App,
+        editing::{apply as editing, preset_edit::Edit},
+        files::{apply as files, command::Purpose},
+        picture::{apply as picture, review::Review},
+    },
+    scene::camera_moves::{FRONT, SIDE, TOP},
+};
 
-const COMMAND: Modifiers = Modifiers::COMMAND;
 const COMMAND_SHIFT: Modifiers = Modifiers {
     shift: true,
     ..Modifiers::COMMAND
@@ -83,186 +32,100 @@ const fn shift(key: Key) -> KeyboardShortcut {
 }
 
 const fn command(key: Key) -> KeyboardShortcut {
-    KeyboardShortcut::new(COMMAND, key)
+    KeyboardShortcut::new(Modifiers::COMMAND, key)
+}
+
+const fn command_shift(key: Key) -> KeyboardShortcut {
+    KeyboardShortcut::new(COMMAND_SHIFT, key)
 }
 
 /// An action, its label and its shortcuts.
 pub type Entry = (Action, &'static str, &'static [KeyboardShortcut]);
 
-/// Every action with the shortcuts that it has unless the user binds others, see
-/// [`Keymap`](crate::app::settings::keymap::Keymap).
-pub const ACTIONS: &[Entry] = &[
-    (
-        Action::Redo,
-        "Redo",
-        &[
-            KeyboardShortcut::new(COMMAND_SHIFT, Key::Z),
-            command(Key::Y),
-        ],
-    ),
-    (Action::Undo, "Undo", &[command(Key::Z)]),
-    (
-        Action::SaveAs,
-        "Save as…",
-        &[KeyboardShortcut::new(COMMAND_SHIFT, Key::S)],
-    ),
-    (Action::Save, "Save", &[command(Key::S)]),
-    (Action::Open, "Open…", &[command(Key::O)]),
-    (
-        Action::Film,
-        "Export film…",
-        &[KeyboardShortcut::new(COMMAND_SHIFT, Key::E)],
-    ),
-    (
-        Action::Export,
-        "Export PNG…",
-        &[plain(Key::F12), command(Key::E)],
-    ),
-    (Action::CopyPreset, "Copy preset", &[]),
-    (Action::PastePreset, "Paste preset", &[]),
-    (Action::CopyLink, "Copy link to a page", &[]),
-    (Action::ExportAll, "Export everything", &[]),
-    (Action::Quit, "Quit", &[command(Key::Q)]),
-    (Action::OpenWithScene, "Open with its scene", &[]),
-    (Action::ForgetRecents, "Forget recent files", &[]),
-    (
-        Action::PreviousPreset,
-        "Previous preset",
-        &[plain(Key::OpenBracket)],
-    ),
-    (
-        Action::NextPreset,
-        "Next preset",
-        &[plain(Key::CloseBracket)],
-    ),
-    (Action::AddEffect, "Add effect…", &[shift(Key::A)]),
-    (Action::NewEffect, "New effect of my own…", &[]),
-    (
-        Action::RandomizeWindow,
-        "Randomize: locks and seeds…",
-        &[shift(Key::R)],
-    ),
-    (Action::Randomize, "Randomize effects", &[plain(Key::R)]),
-    (Action::Sweep, "Sweep of parameters…", &[shift(Key::S)]),
-    (Action::Frame, "Frame the scene", &[plain(Key::Home)]),
-    (Action::Front, "Front view", &[plain(Key::Num1)]),
-    (Action::Side, "Side view", &[plain(Key::Num3)]),
-    (Action::Top, "Top view", &[plain(Key::Num7)]),
-    (
-        Action::Orthographic,
-        "Orthographic or perspective",
-        &[plain(Key::Num5)],
-    ),
-    (Action::AddBookmark, "Bookmark the camera", &[shift(Key::C)]),
-    (
-        Action::NextBookmark,
-        "Next bookmark of the camera",
-        &[plain(Key::C)],
-    ),
-    (Action::Play, "Play or pause", &[plain(Key::Space)]),
-    (Action::StepBack, "Step back 1/30 s", &[plain(Key::Comma)]),
-    (
-        Action::StepForward,
-        "Step forward 1/30 s",
-        &[plain(Key::Period)],
-    ),
-    (Action::Rewind, "Go to the start", &[plain(Key::Num0)]),
-    (
-        Action::RemoveKey,
-        "Remove the selected key",
-        &[plain(Key::Delete), plain(Key::Backspace)],
-    ),
-    (
-        Action::Verify,
-        "Verify against the oracle",
-        &[plain(Key::V)],
-    ),
-    (Action::Extremes, "Run extreme cases…", &[]),
-    (Action::Review, "Review of goldens…", &[shift(Key::G)]),
-    (
-        Action::AcceptGolden,
-        "Review: accept the new picture",
-        &[plain(Key::Y)],
-    ),
-    (
-        Action::RejectGolden,
-        "Review: keep the golden",
-        &[plain(Key::X)],
-    ),
-    (Action::NextGolden, "Review: next preset", &[plain(Key::K)]),
-    (Action::Overlays, "Show or hide overlays", &[plain(Key::O)]),
-    (
-        Action::NextPixel,
-        "Next pixel of the overlays",
-        &[plain(Key::N)],
-    ),
-    (
-        Action::PreviousPixel,
-        "Previous pixel of the overlays",
-        &[shift(Key::N)],
-    ),
-    (
-        Action::Handles,
-        "Show or hide handles of points and light",
-        &[plain(Key::H)],
-    ),
-    (
-        Action::BoundingBox,
-        "Show or hide the box of the scene",
-        &[plain(Key::B)],
-    ),
-    (Action::Axes, "Show or hide the axes", &[]),
-    (Action::Grid, "Show or hide the grid", &[]),
-    (
-        Action::Compare,
-        "Compare: wipe, side by side, difference",
-        &[shift(Key::Backslash), plain(Key::Pipe)],
-    ),
-    (
-        Action::FlipAb,
-        "Switch between the reference and this preset",
-        &[plain(Key::Backslash)],
-    ),
-    (
-        Action::Trade,
-        "Show or hide Trade: time against error",
-        &[plain(Key::M)],
-    ),
-    (Action::Timing, "Show or hide timing", &[plain(Key::G)]),
-    (Action::Panels, "Show or hide panels", &[plain(Key::F11)]),
-    (
-        Action::Timeline,
-        "Show or hide the timeline",
-        &[plain(Key::T)],
-    ),
-    (Action::Log, "Show or hide the log", &[plain(Key::L)]),
-    (Action::Palette, "Command palette…", &[command(Key::K)]),
-    (
-        Action::CheatSheet,
-        "Cheat sheet",
-        &[plain(Key::F1), plain(Key::Questionmark)],
-    ),
-    (
-        Action::Settings,
-        "Settings and keys…",
-        &[command(Key::Comma)],
-    ),
-    (
-        Action::ScaleUp,
-        "Larger texts and controls",
-        &[command(Key::Plus), command(Key::Equals)],
-    ),
-    (
-        Action::ScaleDown,
-        "Smaller texts and controls",
-        &[command(Key::Minus)],
-    ),
-    (
-        Action::ScaleReset,
-        "Texts and controls at 100 %",
-        &[command(Key::Num0)],
-    ),
-];
+/// Declares the actions: the name of each, its label, the shortcuts that it has unless the user binds
+/// others (see [`Keymap`](crate::app::settings::keymap::Keymap)), and what it does.
+macro_rules! actions {
+    ($($action:ident $label:literal [$($keys:expr),*] $run:expr;)*) => {
+        /// What a key or a menu entry does.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub enum Action {
+            $($action,)*
+        }
+
+        /// Every action.
+        pub const ACTIONS: &[Entry] = &[$((Action::$action, $label, &[$($keys),*]),)*];
+
+        impl Action {
+            fn run(self) -> fn(&mut App) {
+                match self {
+                    $(Self::$action => $run,)*
+                }
+            }
+        }
+    };
+}
+
+actions! {
+    Redo "Redo" [command_shift(Key::Z), command(Key::Y)] |app| editing::redo(&mut app.state);
+    Undo "Undo" [command(Key::Z)] |app| editing::undo(&mut app.state);
+    SaveAs "Save as…" [command_shift(Key::S)] |app| files::ask_path(app, Purpose::SaveAs);
+    Save "Save" [command(Key::S)] files::save;
+    Open "Open…" [command(Key::O)] |app| files::ask_path(app, Purpose::Open);
+    Film "Export film…" [command_shift(Key::E)] toggle_film;
+    Export "Export PNG…" [plain(Key::F12), command(Key::E)] |app| files::ask_path(app, Purpose::Export);
+    CopyPreset "Copy preset" [] copy_preset;
+    PastePreset "Paste preset" [] |app| app.ctx.send_viewport_cmd(ViewportCommand::RequestPaste);
+    CopyLink "Copy link to a page" [] |app| copy_link(&mut app.state);
+    ExportAll "Export everything" [] export_all;
+    Quit "Quit" [command(Key::Q)] |app| app.ctx.send_viewport_cmd(ViewportCommand::Close);
+    OpenWithScene "Open with its scene" [] files::open_with_scene;
+    ForgetRecents "Forget recent files" [] |app| app.state.settings.recents.clear();
+    PreviousPreset "Previous preset" [plain(Key::OpenBracket)] |app| files::open_neighbor(app, -1);
+    NextPreset "Next preset" [plain(Key::CloseBracket)] |app| files::open_neighbor(app, 1);
+    AddEffect "Add effect…" [shift(Key::A)] |app| app.panels.browser.effects.begin_adding(String::new());
+    NewEffect "New effect of my own…" [] |app| ask_new_effect(app, None);
+    RandomizeWindow "Randomize: locks and seeds…" [shift(Key::R)] |app| app.panels.randomize.toggle();
+    Randomize "Randomize effects" [plain(Key::R)] |app| editing::randomize(&mut app.state);
+    Sweep "Sweep of parameters…" [shift(Key::S)] |app| app.panels.sweep.toggle();
+    Frame "Frame the scene" [plain(Key::Home)] |app| app.edit(Edit::FrameScene);
+    Front "Front view" [plain(Key::Num1)] |app| app.edit(Edit::LookAlong(FRONT));
+    Side "Side view" [plain(Key::Num3)] |app| app.edit(Edit::LookAlong(SIDE));
+    Top "Top view" [plain(Key::Num7)] |app| app.edit(Edit::LookAlong(TOP));
+    Orthographic "Orthographic or perspective" [plain(Key::Num5)] |app| app.edit(Edit::ToggleOrthographic);
+    AddBookmark "Bookmark the camera" [shift(Key::C)] |app| app.edit(Edit::AddBookmark);
+    NextBookmark "Next bookmark of the camera" [plain(Key::C)] |app| app.edit(Edit::NextBookmark);
+    Play "Play or pause" [plain(Key::Space)] |app| editing::play_or_pause(&mut app.state);
+    StepBack "Step back 1/30 s" [plain(Key::Comma)] |app| app.state.session.step_time(-1.0);
+    StepForward "Step forward 1/30 s" [plain(Key::Period)] |app| app.state.session.step_time(1.0);
+    Rewind "Go to the start" [plain(Key::Num0)] |app| app.state.session.rewind();
+    RemoveKey "Remove the selected key" [plain(Key::Delete), plain(Key::Backspace)] editing::remove_selected_key;
+    Verify "Verify against the oracle" [plain(Key::V)] picture::verify;
+    Extremes "Run extreme cases…" [] |app| app.panels.extremes.toggle();
+    Review "Review of goldens…" [shift(Key::G)] toggle_review;
+    AcceptGolden "Review: accept the new picture" [plain(Key::Y)] |app| picture::accept_golden(&mut app.state);
+    RejectGolden "Review: keep the golden" [plain(Key::X)] |app| picture::review(&mut app.state, Review::reject);
+    NextGolden "Review: next preset" [plain(Key::K)] |app| picture::review(&mut app.state, Review::next);
+    Overlays "Show or hide overlays" [plain(Key::O)] |app| app.state.picture.overlays.toggle();
+    NextPixel "Next pixel of the overlays" [plain(Key::N)] |app| picture::step_pixel(&mut app.state, true);
+    PreviousPixel "Previous pixel of the overlays" [shift(Key::N)] |app| picture::step_pixel(&mut app.state, false);
+    Handles "Show or hide handles of points and light" [plain(Key::H)] |app| app.state.open.handles ^= true;
+    BoundingBox "Show or hide the box of the scene" [plain(Key::B)] |app| app.state.open.bounding_box ^= true;
+    Axes "Show or hide the axes" [] |app| app.state.open.axes ^= true;
+    Grid "Show or hide the grid" [] |app| app.state.open.grid ^= true;
+    Compare "Compare: wipe, side by side, difference" [shift(Key::Backslash), plain(Key::Pipe)] |app| app.panels.viewport.compare.cycle();
+    FlipAb "Switch between the reference and this preset" [plain(Key::Backslash)] |app| app.panels.viewport.compare.flip();
+    Trade "Show or hide Trade: time against error" [plain(Key::M)] |app| app.state.open.trade ^= true;
+    Timing "Show or hide timing" [plain(Key::G)] |app| app.state.open.timing ^= true;
+    Panels "Show or hide panels" [plain(Key::F11)] toggle_panels;
+    Timeline "Show or hide the timeline" [plain(Key::T)] |app| app.state.open.timeline ^= true;
+    Log "Show or hide the log" [plain(Key::L)] |app| app.state.open.log ^= true;
+    Palette "Command palette…" [command(Key::K)] toggle_palette;
+    CheatSheet "Cheat sheet" [plain(Key::F1), plain(Key::Questionmark)] |app| app.state.open.settings ^= true;
+    Settings "Settings and keys…" [command(Key::Comma)] |app| app.state.open.settings ^= true;
+    ScaleUp "Larger texts and controls" [command(Key::Plus), command(Key::Equals)] |app| app.change_settings(|settings| settings.change_scale(1.0));
+    ScaleDown "Smaller texts and controls" [command(Key::Minus)] |app| app.change_settings(|settings| settings.change_scale(-1.0));
+    ScaleReset "Texts and controls at 100 %" [command(Key::Num0)] |app| app.change_settings(|settings| settings.scale = 1.0);
+}
 
 /// What the pointer does, for the cheat sheet.
 pub const POINTER: &[(&str, &str)] = &[
@@ -340,6 +203,14 @@ pub fn show_shortcuts(bound: Vec<(Action, Option<KeyboardShortcut>)>) {
 }
 
 impl Action {
+    /// Does what the action says; what it changes is a separate undo step.
+    pub fn perform(self, app: &mut App) {
+        if !matches!(self, Self::Undo | Self::Redo) {
+            app.state.history.close();
+        }
+        self.run()(app);
+    }
+
     fn entry(self) -> &'static Entry {
         ACTIONS
             .iter()

@@ -7,22 +7,15 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use eframe::{egui, egui_wgpu, web_sys::HtmlCanvasElement};
+use eframe::web_sys::HtmlCanvasElement;
 use js_sys::{Array, Function, Promise, Reflect, Uint8Array};
 use wasm_bindgen::{JsCast as _, JsValue, prelude::Closure};
 use wasm_bindgen_futures::JsFuture;
 use web_sys::{Blob, File, HtmlAnchorElement, HtmlInputElement, Response, Storage, Url};
 
-use super::{
-    command::{Command, Commands},
-    device::wgpu_setup,
-    input,
-    log::Level,
-    loss::LossFlag,
-    window::{App, Options},
-};
+use super::{command::Commands, device::wgpu_setup, log::Level};
 use crate::{
-    app::{files::take_along, settings::last_session::LastSession},
+    app::{App, Options, files::take_along, settings::last_session::LastSession, window::input},
     archive,
     host::disk,
     link, preset_file,
@@ -97,7 +90,7 @@ async fn show(
         Box<dyn std::error::Error + Send + Sync>,
     > {
         WINDOW.set(Some(cc.egui_ctx.clone()));
-        let mut app = App::with_loss_flag(cc, options, LossFlag::default())?;
+        let mut app = App::new(cc, options)?;
         wake_on_loss(cc);
         then(&mut app);
         Ok(Box::new(app))
@@ -145,7 +138,7 @@ pub fn send_waiting(commands: &Commands) {
     for waiting in WAITING.take() {
         match waiting {
             Ok(paths) => input::open_given(paths, commands),
-            Err(why) => commands.send(Command::Notify(Level::Error, why)),
+            Err(why) => commands.notify(Level::Error, why),
         }
     }
 }

@@ -10,7 +10,7 @@ use crate::app::{
     },
     files::{scene_loader::SceneKey, state::FileState},
     jobs::Jobs,
-    picture::state::PictureState,
+    picture::{cells::Cells, state::PictureState},
     settings::{OpenPanels, Settings},
 };
 
@@ -55,6 +55,12 @@ impl State {
     /// Logs a message and shows it as a toast.
     pub fn notify(&mut self, level: Level, text: impl Into<String>) {
         self.log.notify(level, text, self.now_s);
+    }
+
+    /// Draws small pictures in the background.
+    pub fn draw_cells(&self, cells: Cells) {
+        let gpu = self.picture.screen.gpu.clone();
+        self.jobs.draw_cells(gpu, cells);
     }
 
     /// The points of the scene that is shown between which a distance is measured.

@@ -3,9 +3,7 @@
 
 use std::ops::RangeInclusive;
 
-use eframe::egui::{
-    self, Button, ComboBox, DragValue, Grid, Response, TextEdit, Ui, emath::Numeric,
-};
+use egui::{self, Button, ComboBox, DragValue, Grid, Response, TextEdit, Ui, emath::Numeric};
 
 use super::{
     icons::{Icon, icon_button},
@@ -148,6 +146,9 @@ pub fn search_ui(ui: &mut Ui, search: &mut String, name: &str) -> Response {
             .char_limit(120)
             .desired_width(ui.available_width() - clear);
         let field = ui.add(field).accessible_name(name);
+        if field.has_focus() {
+            ui.data_mut(|data| data.insert_temp(focused_search(), field.id));
+        }
         if field.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Escape)) {
             search.clear();
         }
@@ -157,6 +158,16 @@ pub fn search_ui(ui: &mut Ui, search: &mut String, name: &str) -> Response {
         field
     })
     .inner
+}
+
+fn focused_search() -> egui::Id {
+    egui::Id::unique("the search that had the focus last")
+}
+
+/// Has a search the focus? It loses nothing when something else happens meanwhile.
+pub fn is_searching(ctx: &egui::Context) -> bool {
+    ctx.memory(|memory| memory.focused())
+        .is_some_and(|id| ctx.data(|data| data.get_temp(focused_search())) == Some(id))
 }
 
 /// A name in a dialog: it takes the focus, with its text selected where `selects`. Returns true

@@ -10,7 +10,6 @@ mod projection;
 mod shading;
 
 use glam::{DMat4, DVec3, DVec4};
-use proptest::prelude::*;
 use rasterlab::{
     effects::{Effect, Stack},
     frame::{
@@ -31,7 +30,7 @@ use rasterlab::{
     },
 };
 use rasterlab_fuzz::stress::scenes::{
-    Rng, SimpleMesh, pixel_view, scene_of_meshes, square_perspective, triangle_soup,
+    Rng, SimpleMesh, for_seeds, pixel_view, scene_of_meshes, square_perspective, triangle_soup,
 };
 
 fn scene(meshes: &[SimpleMesh]) -> Scene {

@@ -3,6 +3,7 @@
 //! and beside all built-in effects. Needs no adapter.
 
 mod accepted;
+mod duplicates;
 mod mutated;
 mod numerics;
 mod pictures;

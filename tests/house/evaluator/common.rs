@@ -53,6 +53,34 @@ pub fn call(program: &Program, arguments: &[Word]) -> Vec<Word> {
         .to_vec()
 }
 
+/// Results of whole numbers, of all samples at once.
+pub fn call_all(program: &Program, samples: &[Vec<i32>]) -> Vec<Vec<i32>> {
+    let mut registers = program.registers();
+    let mut alike = Vec::new();
+    for (lane, sample) in samples.iter().enumerate() {
+        alike.clear();
+        for (index, word) in sample.iter().copied().map(Word::from_i32).enumerate() {
+            match program.argument(&registers, index) {
+                Some(row) => row[lane].set(word),
+                None if index >= program.own_argument_words() => alike.push(word),
+                None => {}
+            }
+        }
+    }
+    let ended = program.run(&mut registers, &alike, samples.len(), &mut NoHost);
+    assert_eq!(ended.count_ones() as usize, samples.len());
+    let word = |lane: usize, at: usize| {
+        let row = program.result(&registers, at);
+        row.map_or(samples[lane][at], |row| row[lane].get().to_i32())
+    };
+    let result = |lane| {
+        (0..program.result_words())
+            .map(|at| word(lane, at))
+            .collect()
+    };
+    (0..samples.len()).map(result).collect()
+}
+
 pub fn floats(values: &[f64]) -> Vec<Word> {
     values.iter().map(|&value| Word::from_f64(value)).collect()
 }
@@ -90,3 +118,22 @@ impl Random {
         (self.bits() % u64::from(below)) as u32
     }
 }
+
+/// Operators on numbers, and what they do.
+pub const OPERATORS: [(&str, fn(i32, i32) -> i32); 15] = [
+    ("(A + B)", i32::wrapping_add),
+    ("(A - B)", i32::wrapping_sub),
+    ("(A * B)", i32::wrapping_mul),
+    ("(A / B)", |a, b| a.checked_div(b).unwrap_or(a)),
+    ("(A % B)", |a, b| a.checked_rem(b).unwrap_or(0)),
+    ("(A & B)", |a, b| a & b),
+    ("(A | B)", |a, b| a | b),
+    ("(A ^ B)", |a, b| a ^ b),
+    ("(A << bitcast<u32>(B))", |a, b| a << (b & 31)),
+    ("(A >> bitcast<u32>(B))", |a, b| a >> (b & 31)),
+    ("min(A, B)", i32::min),
+    ("max(A, B)", i32::max),
+    ("(-A)", |a, _| a.wrapping_neg()),
+    ("(~A)", |a, _| !a),
+    ("select(A, B, B < 0)", |a, b| if b < 0 { b } else { a }),
+];

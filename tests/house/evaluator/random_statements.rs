@@ -1,9 +1,9 @@
-//! Random programs on integers, against direct execution.
+//! Random programs on integers, with random expressions, against direct execution.
 
-use proptest::prelude::*;
-use rasterlab::evaluator::{LANES, NoHost, Options, Word};
+use rasterlab::evaluator::{LANES, Options};
+use rasterlab_fuzz::stress::scenes::for_seeds;
 
-use super::common::{Random, program_with};
+use super::common::{OPERATORS, Random, call_all, program_with};
 
 type V = [i32; 4];
 
@@ -240,12 +240,19 @@ impl Generator<'_> {
     }
 
     fn number(&mut self, names: &Names, depth: u32) -> Read<i32> {
-        let kind = self.random.u32(if depth > 2 { 3 } else { 6 });
+        let kind = self.random.u32(if depth > 2 { 3 } else { 9 });
         let (at, letter) = self.component();
         if kind == 0 {
             let value = self.random.bits() as i32 >> self.random.u32(31);
-            let text = format!("bitcast<i32>({}u)", value.cast_unsigned());
+            // With a variable: constant expressions that overflow would not compile.
+            let text = format!("(bitcast<i32>({}u) + zero)", value.cast_unsigned());
             return read(text, move |_| value);
+        }
+        if kind > 5 {
+            let (operator, of) = OPERATORS[self.random.u32(OPERATORS.len() as u32) as usize];
+            let [a, b] = [0, 1].map(|_| self.number(names, depth + 1));
+            let text = operator.replace('A', &a.text).replace('B', &b.text);
+            return read(text, move |state| of((a.value)(state), (b.value)(state)));
         }
         if kind < 3 {
             let Read { text, value } = self.vector(names, depth + 1);
@@ -399,45 +406,43 @@ impl Generator<'_> {
     }
 }
 
-proptest! {
-    #![proptest_config(ProptestConfig { cases: std::env::var("PROPTEST_CASES").ok().and_then(|cases| cases.parse().ok()).unwrap_or(256), failure_persistence: None, ..ProptestConfig::default() })]
-
-    #[test]
-    fn statements(seed in any::<u64>()) {
-        let mut random = Random(seed);
-        let mut generator = Generator { random: &mut random, names: 0, budget: 40 };
+#[test]
+fn statements() {
+    for_seeds(256, |rng| {
+        let mut random = Random(u64::from(rng.next_u32()) << 32 | u64::from(rng.next_u32()));
+        let (names, budget) = (0, 40);
+        let mut generator = Generator {
+            random: &mut random,
+            names,
+            budget,
+        };
         let (body, run) = generator.block(0, &mut Vec::new());
-        let source = format!("{PRELUDE}\nfn f(a: vec4i, b: vec4i) -> vec4i {{\nvar s: S;\ns.v = a;\nvar w = b;\n{body}return {RESULT};\n}}\n");
+        let source = format!(
+            "{PRELUDE}\nfn f(a: vec4i, b: vec4i) -> vec4i {{\nvar s: S;\ns.v = a;\nvar w = b;\n{body}return {RESULT};\n}}\n"
+        );
         // The last words may be alike in all samples.
-        let options = Options { alike: random.u32(9) as usize, ..Options::default() };
+        let options = Options {
+            alike: random.u32(9) as usize,
+            ..Options::default()
+        };
         let program = program_with(&source, "f", &options);
-        let mut registers = program.registers();
         let own = 8 - options.alike;
         for count in [1, LANES, 1 + random.u32(LANES as u32) as usize] {
-            let mut samples: Vec<[i32; 8]> = (0..count).map(|_| std::array::from_fn(|_| random.bits() as i32 >> random.u32(30))).collect();
-            let alike: Vec<i32> = samples[0][own..].to_vec();
-            for (lane, sample) in samples.iter_mut().enumerate() {
-                sample[own..].copy_from_slice(&alike);
-                for (index, &number) in sample.iter().enumerate() {
-                    if let Some(row) = program.argument(&registers, index) {
-                        row[lane].set(Word::from_i32(number));
-                    }
-                }
-            }
-            let alike: Vec<Word> = alike.into_iter().map(Word::from_i32).collect();
-            let ended = program.run(&mut registers, &alike, count, &mut NoHost);
-            prop_assert_eq!(ended.count_ones() as usize, count);
-            for (lane, sample) in samples.iter().enumerate() {
-                let mut state = State { g: [1, 2, 3, 4], ..State::default() };
-                state.s.v.copy_from_slice(&sample[..4]);
-                state.w.copy_from_slice(&sample[4..]);
-                let expected = if run(&mut state) { state.w } else { result(&state) };
-                let given = each(|at| {
-                    let row = program.result(&registers, at);
-                    row.map_or(sample[at], |row| row[lane].get().to_i32())
-                });
-                prop_assert_eq!(given, expected, "{} at {:?}, sample {} of {}", source, sample, lane, count);
+            let mut number = || random.bits() as i32 >> random.u32(30);
+            let alike: Vec<i32> = (own..8).map(|_| number()).collect();
+            let samples: Vec<Vec<i32>> = (0..count)
+                .map(|_| (0..own).map(|_| number()).chain(alike.clone()).collect())
+                .collect();
+            for (lane, given) in call_all(&program, &samples).into_iter().enumerate() {
+                let sample = &samples[lane];
+                let [v, w] = [0, 4].map(|first| each(|at| sample[first + at]));
+                let mut state = State::default();
+                (state.s.v, state.w, state.g) = (v, w, [1, 2, 3, 4]);
+                let is_returned = run(&mut state);
+                let expected = if is_returned { state.w } else { result(&state) };
+                let place = format!("sample {lane} of {count}: {sample:?}");
+                assert_eq!(given, expected, "{source} at {place}");
             }
         }
-    }
+    });
 }

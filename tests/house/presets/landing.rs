@@ -1,7 +1,6 @@
 //! Promise: a preset that lands on another scene keeps all that belongs to that scene, brings all
 //! that belongs to its look, and becomes a new preset without a file.
 
-use proptest::prelude::*;
 use rasterlab::{
     preset::{
         Preset, SceneSource,
@@ -10,6 +9,7 @@ use rasterlab::{
     preset_file::{self, Folders},
     scene::parts::scope_masks,
 };
+use rasterlab_fuzz::stress::scenes::for_seeds;
 
 use super::{round_trip::any_preset, *};
 
@@ -22,28 +22,40 @@ fn is_of_scene(setting: &Setting) -> bool {
     }
 }
 
-proptest! {
-    #![proptest_config(ProptestConfig { cases: 200, failure_persistence: None, ..ProptestConfig::default() })]
-
-    #[test]
-    fn every_key_comes_from_the_scene_or_from_the_look(look in any_preset(), own in any_preset()) {
+#[test]
+fn every_key_comes_from_the_scene_or_from_the_look() {
+    for_seeds(200, |rng| {
+        let (look, own) = (any_preset(rng), any_preset(rng));
         let landed = look.applied_to(&own);
-        for setting in SECTIONS.iter().filter(|section| section.name != "test").flat_map(|section| section.settings.iter()) {
+        let sections = SECTIONS.iter().filter(|section| section.name != "test");
+        for setting in sections.flat_map(|section| section.settings.iter()) {
             if setting.path() == "output.reference_height_px" {
                 continue;
             }
             let from = if is_of_scene(setting) { &own } else { &look };
-            prop_assert_eq!(setting.get(&landed), setting.get(from), "{}", setting.path());
+            assert_eq!(
+                setting.get(&landed),
+                setting.get(from),
+                "{}",
+                setting.path()
+            );
         }
-        prop_assert_eq!((&landed.stack, &landed.animation), (&look.stack, &look.animation));
+        assert_eq!(
+            (&landed.stack, &landed.animation),
+            (&look.stack, &look.animation)
+        );
         // Lengths in pixels keep the part of the picture that they fill.
         let [scale, before] = [&landed, &look].map(|preset| preset.output.length_scale(100.0));
-        prop_assert!(scale == before || look.output.size[1] == 0, "{} {}", scale, before);
-        prop_assert_eq!(&landed.test, &None);
+        assert!(
+            scale == before || look.output.size[1] == 0,
+            "{scale} {before}"
+        );
+        assert_eq!(landed.test, None);
         // Landing again changes nothing, and so does landing on itself.
-        prop_assert_eq!(bits(&landed.applied_to(&own)), bits(&landed));
-        prop_assert_eq!(bits(&look.applied_to(&look)), bits(&Preset { test: None, ..look.clone() }));
-    }
+        assert_eq!(bits(&landed.applied_to(&own)), bits(&landed));
+        let itself = look.applied_to(&look);
+        assert_eq!(bits(&itself), bits(&Preset { test: None, ..look }));
+    });
 }
 
 /// A preset of the gallery on a model that is named by a relative path.

@@ -44,7 +44,7 @@ const MEASURED_MS: f64 = 20.0;
 const MOST_FRAMES: usize = 64;
 
 /// Frames of a sample by the processor's clock where one takes `each_ms`.
-fn repeated(each_ms: f64) -> usize {
+fn frame_count(each_ms: f64) -> usize {
     (MEASURED_MS / each_ms)
         .ceil()
         .clamp(FRAMES_PER_SAMPLE as f64, MOST_FRAMES as f64) as usize
@@ -402,7 +402,7 @@ impl Entry {
             (Some(ms), Kept::Alone) => {
                 self.alone.push(ms);
                 if self.clock == Clock::Processor {
-                    self.frames = repeated(ms);
+                    self.frames = frame_count(ms);
                 }
             }
             (None, Kept::Alone) => {}
@@ -526,7 +526,7 @@ mod tests {
 
     #[test]
     fn quick_frames_are_repeated_until_the_clock_of_a_browser_can_tell() {
-        let frames = [0.0, 0.01, 0.4, 1.5, 9.0, 800.0].map(repeated);
+        let frames = [0.0, 0.01, 0.4, 1.5, 9.0, 800.0].map(frame_count);
         assert_eq!(frames, [64, 64, 50, 14, 3, 2]);
     }
 

@@ -43,9 +43,6 @@ pub fn jobs(film: &Film, paths: Vec<PathBuf>) -> Vec<FrameJob> {
 /// Finds the finished frames, and makes their folder. Any other file is overwritten only if
 /// `overwrites`; then also frames that another adapter drew. Returns the names of other adapters
 /// whose frames are kept.
-///
-/// # Errors
-/// Somebody else's files are there, or the folder cannot be made.
 pub fn find_finished(
     jobs: &mut [FrameJob],
     size: [u32; 2],

@@ -81,9 +81,6 @@ pub struct Production {
 impl Production {
     /// Looks for finished frames and begins the files. Files that are not of this film are
     /// overwritten only if `overwrites`.
-    ///
-    /// # Errors
-    /// Somebody else's files are there, a file cannot be written, or ffmpeg does not start.
     pub fn begin(
         film: Film,
         outputs: Outputs,
@@ -146,9 +143,6 @@ impl Production {
     /// Draws the frames that are not kept, in batches: the device draws one at a time, and a batch
     /// is compressed in parallel. After a stop the frames that were drawn are there, and no
     /// file of the whole film.
-    ///
-    /// # Errors
-    /// A frame cannot be drawn, a file cannot be written, or the person stopped the film.
     pub async fn draw<P: Painter>(
         &mut self,
         painter: &mut P,

@@ -42,9 +42,6 @@ pub struct Schedule {
 impl Schedule {
     /// The frames of a preset with this `clock`. `dashes` stands in front of the names of times in
     /// errors.
-    ///
-    /// # Errors
-    /// A time, a rate or a frame lies outside of what there is, or there are too many frames.
     pub fn new(times: &Times, clock: &Clock, dashes: &str) -> Result<Self, FilmError> {
         let [begin_s, end_s] = clock.range_s;
         let (from_s, to_s, fps) = (

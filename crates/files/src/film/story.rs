@@ -27,8 +27,6 @@ pub struct Film {
 }
 
 impl Film {
-    /// # Errors
-    /// The preset cannot be saved in a picture.
     pub fn new(
         preset_file: PresetFile,
         scene: Arc<Scene>,

@@ -41,9 +41,6 @@ pub struct VideoTarget {
 
 impl VideoTarget {
     /// A video of `size` pixels (width, height) at `path`, whose extension says the kind.
-    ///
-    /// # Errors
-    /// Another extension, an odd side where the kind has none, or there is no ffmpeg.
     pub fn new(path: &Path, size: [u32; 2]) -> Result<Self, FilmError> {
         let file = path.display().to_string();
         let Some(container) = Container::of(path) else {
@@ -90,9 +87,6 @@ pub struct Video {
 
 impl Video {
     /// Starts ffmpeg.
-    ///
-    /// # Errors
-    /// The file cannot be written, or is kept as `existing` says, or ffmpeg does not start.
     pub fn begin(
         target: &VideoTarget,
         options: &VideoOptions,
@@ -142,9 +136,6 @@ impl Video {
     }
 
     /// Adds the next frame.
-    ///
-    /// # Errors
-    /// ffmpeg failed, or `is_stopped` returned true while it was waited for.
     pub fn push(&mut self, pixels: Pixels, is_stopped: &dyn Fn() -> bool) -> Result<(), FilmError> {
         let mut waiting = pixels;
         while let Some(frames) = &self.frames {

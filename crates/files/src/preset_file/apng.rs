@@ -46,9 +46,6 @@ pub struct AnimatedPng {
 
 impl AnimatedPng {
     /// Begins an animation of `options.frames` frames at `path`.
-    ///
-    /// # Errors
-    /// The file cannot be written, or is kept as `existing` says, or the picture has no pixels.
     pub fn begin(
         path: &Path,
         options: &AnimationOptions,
@@ -87,9 +84,6 @@ impl AnimatedPng {
     }
 
     /// Ends the animation after its last frame.
-    ///
-    /// # Errors
-    /// Frames are missing, or the file cannot be written.
     pub fn finish(self) -> Result<(), PresetError> {
         let Self { writer, file } = self;
         writer.finish().map_err(|e| file.failed(e))?;

@@ -9,7 +9,7 @@ use crate::preset::{
 };
 
 /// A preset whose camera is that of a bookmark, which the settings of [`CAMERA`] read and write.
-fn seen(bookmark: Option<&Bookmark>) -> Preset {
+fn preset_of(bookmark: Option<&Bookmark>) -> Preset {
     Preset {
         camera: Some(bookmark.map(|mark| mark.camera).unwrap_or_default()),
         ..Preset::default()
@@ -32,7 +32,7 @@ pub fn read(
             let reason = format!("is one bookmark too many; a preset has at most {MAX_BOOKMARKS}");
             return Err(reader.error(tables, &prefix, name, reason));
         }
-        let mut shown = seen(None);
+        let mut shown = preset_of(None);
         read_section(
             reader,
             table,
@@ -71,7 +71,7 @@ pub fn patch(root: &mut Table, saved: &[Bookmark], now: &[Bookmark]) {
         let (saved, item) = old.map_or((None, None), |(old, item)| (Some(*old), item.take()));
         let mut item = item.unwrap_or_else(|| Item::Table(Table::new()));
         if let Some(table) = item.as_table_like_mut() {
-            patch_settings(table, &CAMERA, &seen(saved), &seen(Some(mark)));
+            patch_settings(table, &CAMERA, &preset_of(saved), &preset_of(Some(mark)));
         }
         tables.insert(&mark.name, item);
     }

@@ -182,9 +182,6 @@ pub fn is_effect_text(text: &str) -> bool {
 }
 
 /// Writes the values to `folder/EFFECT/NAME.toml`, under the file name of `name`. Returns the path.
-///
-/// # Errors
-/// No name for a file, a file of that name exists, or it cannot be written.
 pub fn save_values(
     values: &EffectValues,
     catalog: &Catalog,

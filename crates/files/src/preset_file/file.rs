@@ -153,8 +153,6 @@ impl PresetFile {
         self.preset != self.saved
     }
 
-    /// # Errors
-    /// The reader had warnings.
     pub fn strict(self) -> Result<Self, PresetError> {
         if self.warnings.is_empty() {
             Ok(self)

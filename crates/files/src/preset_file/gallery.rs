@@ -203,9 +203,6 @@ pub fn user_folder() -> Option<PathBuf> {
 
 /// Opens what a person names: a preset of the gallery by its id, or by its id or name in other
 /// letters; a `.toml` file; a PNG saved by rasterlab; a model; or `builtin:QUERY`.
-///
-/// # Errors
-/// No such preset or file, a name that several presets have, or a file that cannot be read.
 pub fn open(what: &str, folders: &Folders) -> Result<PresetFile, PresetError> {
     if let Some(query) = what.strip_prefix("builtin:") {
         let name = query.split('?').next().unwrap_or(query);

@@ -270,8 +270,8 @@ fn to_toml(track: &Track, before: Option<&Item>) -> Array {
             .and_then(Toml::as_inline_table)
             .cloned()
             .unwrap_or_default();
-        put(&mut entry, &time, &Value::number(key.time_s));
-        put(
+        write_value(&mut entry, &time, &Value::number(key.time_s));
+        write_value(
             &mut entry,
             &value,
             &track
@@ -283,7 +283,7 @@ fn to_toml(track: &Track, before: Option<&Item>) -> Array {
         if key.easing == default_easing(track.field()) {
             entry.remove(&easing.name);
         } else {
-            put(&mut entry, &easing, &Value::Choice(key.easing as usize));
+            write_value(&mut entry, &easing, &Value::Choice(key.easing as usize));
         }
         if old.is_none() {
             entry.decor_mut().set_prefix("\n    ");
@@ -315,7 +315,7 @@ fn number(value: &Toml) -> Option<f64> {
 }
 
 /// Sets a value; one that is already there keeps its spelling.
-fn put(entry: &mut InlineTable, param: &Param, value: &Value) {
+fn write_value(entry: &mut InlineTable, param: &Param, value: &Value) {
     let (name, mut value) = (&param.name, toml_value::write(&param.value_type, value));
     match entry.get_mut(name) {
         Some(there) if same(there, &value) => {}

@@ -20,9 +20,6 @@ pub fn parse(text: &str, id: &str) -> Result<PresetFile, PresetError> {
 }
 
 /// Reads the text of a preset; `file` is what errors and warnings call it.
-///
-/// # Errors
-/// No TOML, an older schema, or a value that is not allowed, with its line.
 pub fn parse_file(text: &str, id: &str, file: &str) -> Result<PresetFile, PresetError> {
     parse_with(text, id, file, &Catalog::default())
 }
@@ -57,9 +54,6 @@ pub fn parse_with(
 }
 
 /// Reads a preset from a `.toml` file.
-///
-/// # Errors
-/// The file cannot be read, or as [`parse_file`].
 pub fn load(path: &Path) -> Result<PresetFile, PresetError> {
     load_with(path, &Catalog::default())
 }

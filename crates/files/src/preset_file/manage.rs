@@ -68,7 +68,7 @@ pub fn rename(path: &Path, name: &str) -> Result<PathBuf, PresetError> {
     let (name, new_stem) = (name.trim(), file_stem(name)?);
     let to = path.with_file_name(format!("{new_stem}.toml"));
     let text = read_text(path)?;
-    let renamed = named(&text, name, &new_stem);
+    let renamed = with_name(&text, name, &new_stem);
     if to == path {
         if renamed != text {
             write_atomically(path, renamed.as_bytes(), Existing::Replace)?;
@@ -104,7 +104,7 @@ pub fn rename(path: &Path, name: &str) -> Result<PathBuf, PresetError> {
 }
 
 /// The text with `name` as its name. A preset that has none needs none if its file is called so.
-fn named(text: &str, name: &str, stem: &str) -> String {
+fn with_name(text: &str, name: &str, stem: &str) -> String {
     let Ok(mut document) = text.parse::<DocumentMut>() else {
         return text.into();
     };
@@ -132,9 +132,6 @@ fn named(text: &str, name: &str, stem: &str) -> String {
 
 /// Writes a copy of a preset, as its file has it, into `folder`, under a name that is free. It has
 /// no golden. Returns its path.
-///
-/// # Errors
-/// The file cannot be read, or the copy cannot be written.
 pub fn duplicate(source: &PresetFile, folder: &Path) -> Result<PathBuf, PresetError> {
     let source = match &source.path {
         Some(path) => &load_with(path, &source.effects)?,

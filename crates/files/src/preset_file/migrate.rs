@@ -14,9 +14,6 @@ pub const CURRENT: i64 = 2;
 /// No release had a schema before [`CURRENT`]. The next one is migrated here, in memory: a
 /// migration changes keys and words inside their lines, so that the lines of later errors are those
 /// of the file, and saving writes the new schema down.
-///
-/// # Errors
-/// The schema is no whole number, or older than [`CURRENT`].
 pub fn migrate(
     document: Document<String>,
     file: &str,

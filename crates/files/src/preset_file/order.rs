@@ -8,9 +8,6 @@ use crate::{effect_files::Catalog, effects::Stack, params::did_you_mean};
 
 /// `stack` in the order that `toml` names. `has_table` tells whether the file has a table for an
 /// effect that this program does not know; such a name is kept in the file and passed over here.
-///
-/// # Errors
-/// Completes a sentence that begins with `stack`.
 pub fn read(
     toml: Option<&Toml>,
     stack: &Stack,

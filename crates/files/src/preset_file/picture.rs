@@ -157,9 +157,6 @@ pub fn pixels_of_png(bytes: &[u8], file: &str) -> Result<(Vec<[u8; 4]>, [u32; 2]
 /// Reads the preset of the picture at `path`. A picture may come from anyone: a model outside of
 /// its folder is not its scene before [`PresetFile::with_outside_model`], and one of the same name
 /// beside the picture is taken instead.
-///
-/// # Errors
-/// The file cannot be read, or as [`preset_from_png`].
 pub fn load_picture(path: &Path) -> Result<PresetFile, PresetError> {
     let file = path.display().to_string();
     let mut preset_file = PresetFile {
@@ -187,9 +184,6 @@ pub fn load_picture(path: &Path) -> Result<PresetFile, PresetError> {
 }
 
 /// The preset inside a picture that rasterlab saved; `file` is what errors call it.
-///
-/// # Errors
-/// No readable PNG, or one without a preset.
 pub fn preset_from_png(bytes: &[u8], file: &str) -> Result<PresetFile, PresetError> {
     let not_ours = |reason: String| PresetError::NotOurs {
         what: file.into(),

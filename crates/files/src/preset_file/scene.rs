@@ -35,10 +35,6 @@ pub enum SceneError {
 
 /// Builds or loads the scene of a preset: the parts that it shows, its ground, its room and the picture
 /// of its surroundings; relative paths start at the folder of `preset_path`.
-///
-/// # Errors
-/// No such built-in scene, model or picture, one that cannot be read, no part that is shown, or a
-/// variant, clip or camera that the scene does not have.
 pub fn load_scene(preset: &Preset, preset_path: Option<&Path>) -> Result<Arc<Scene>, SceneError> {
     load_scene_beside(preset, [preset_path; 2])
 }
@@ -74,9 +70,6 @@ pub fn load_scene_beside(
 
 /// The box that lengths of a scene are measured by ([`Scene::subject_bounds`]), without ground and
 /// room. The scene is built or loaded for that.
-///
-/// # Errors
-/// No such built-in scene or model, or a model that cannot be read.
 pub fn scene_bounds(
     source: &SceneSource,
     preset_path: Option<&Path>,

@@ -83,7 +83,7 @@ fn section_schema(section: &Section) -> Map<String, Json> {
     let defaults = Preset::default();
     let schema = |setting: &Setting| {
         let mut schema = param_schema(setting, setting.get(&defaults));
-        if let Some(refused) = refused(&setting.path()) {
+        if let Some(refused) = refusal_of(&setting.path()) {
             schema["not"] = refused;
         }
         (setting.name.to_owned(), schema)
@@ -92,7 +92,7 @@ fn section_schema(section: &Section) -> Map<String, Json> {
 }
 
 /// What the rule of a setting refuses, where a schema can say it.
-fn refused(path: &str) -> Option<Json> {
+fn refusal_of(path: &str) -> Option<Json> {
     match path {
         "scene.room" => Some(json!({ "exclusiveMinimum": 0, "exclusiveMaximum": 1 })),
         "scene.path" | "scene.surroundings" => Some(json!({ "pattern": "://" })),

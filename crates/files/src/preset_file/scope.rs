@@ -44,9 +44,6 @@ pub fn read(toml: &Toml, effect: &Effect) -> Result<Scope, String> {
 }
 
 /// Can the effect be limited to parts?
-///
-/// # Errors
-/// Completes a sentence that begins with the name of the key.
 pub fn check(effect: &Effect) -> Result<(), String> {
     if effect.has_scope() {
         return Ok(());

@@ -33,9 +33,6 @@ pub fn to_line(preset_file: &PresetFile) -> String {
 
 /// Reads a pasted line, or the link of a page that carries one; white space from a mail or chat is
 /// forgiven. A model outside of the current folder is not its scene before [`PresetFile::with_outside_model`].
-///
-/// # Errors
-/// The text is no such line, or its preset cannot be read.
 pub fn from_line(line: &str) -> Result<PresetFile, PresetError> {
     let not_ours = |reason: &str| PresetError::NotOurs {
         what: "the pasted text".into(),

@@ -14,9 +14,6 @@ fn scene_of(preset_file: &PresetFile) -> SceneSource {
 impl PresetFile {
     /// The preset `by` of the way to `other`, 0 to 1; see
     /// [`Preset::toward`](crate::preset::Preset::toward). `scene` is that of this one.
-    ///
-    /// # Errors
-    /// They show different scenes: in a sentence.
     pub fn toward(&self, other: &Self, by: f64, scene: &Scene) -> Result<Self, String> {
         if scene_of(self) != scene_of(other) {
             return Err(format!(

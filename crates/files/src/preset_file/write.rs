@@ -144,7 +144,7 @@ fn patch_effect(table: &mut dyn TableLike, saved: Option<&EnabledEffect>, now: &
     let defaults = EnabledEffect::new(&now.effect);
     let saved = saved.unwrap_or(&defaults);
     if saved.on != now.on {
-        put(table, SCOPE_KEY, scope::write(&now.on));
+        write_key(table, SCOPE_KEY, scope::write(&now.on));
     }
     for field in &now.effect.fields {
         let value = |enabled: &EnabledEffect| Some(field.value(&enabled.words));
@@ -180,7 +180,7 @@ fn patch_order(root: &mut Table, catalog: &Catalog, saved: &Stack, now: &Stack) 
         .collect();
     let is_default = now.is_canonical() && unknown.is_empty();
     let is_written = !is_default || has_comment(root, "stack");
-    put(root, "stack", Some(order).filter(|_| is_written));
+    write_key(root, "stack", Some(order).filter(|_| is_written));
 }
 
 /// Sets, keeps or removes one value. A line that carries a comment is kept even when it has the
@@ -202,7 +202,7 @@ fn patch_value(
         return;
     }
     let is_written = text(&now) != text(&default) || has_comment(table, &param.name);
-    put(
+    write_key(
         table,
         &param.name,
         now.filter(|_| is_written)
@@ -211,7 +211,7 @@ fn patch_value(
 }
 
 /// Sets one value with the decoration of the one before, or removes it.
-fn put(table: &mut dyn TableLike, name: &str, value: Option<Toml>) {
+fn write_key(table: &mut dyn TableLike, name: &str, value: Option<Toml>) {
     let Some(mut value) = value else {
         table.remove(name);
         return;

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::{
     device::{Gpu, error::RenderError, pipeline_store::Pipeline, timer::Timer},
-    layout::{BufferId, frame_layout::folded},
+    layout::{BufferId, dispatch::fold_groups},
     passes::recording::Resources,
     resources::{buffers::Buffers, pipelines::Pipelines},
     scene_data::deforms::Deforms,
@@ -56,7 +56,7 @@ impl DeformPass {
         Ok(Self {
             pipeline,
             group,
-            groups: folded(deformable.div_ceil(key.work.group_size)),
+            groups: fold_groups(deformable.div_ceil(key.work.group_size)),
         })
     }
 

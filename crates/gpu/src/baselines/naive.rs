@@ -5,11 +5,7 @@ use std::sync::Arc;
 
 use crate::{
     device::{Gpu, error::RenderError, pipeline_store::Pipeline, timer::Timer},
-    layout::{
-        BufferId,
-        frame_layout::{color_stride, folded},
-        records::NaiveUniform,
-    },
+    layout::{BufferId, dispatch::fold_groups, frame_layout::color_stride, records::NaiveUniform},
     math::rounded_columns,
     passes::recording::Resources,
     resources::{
@@ -93,12 +89,12 @@ impl Naive {
         let passes = vec![
             build(
                 "naive_clear",
-                folded((3 * view.width * view.height).div_ceil(256)),
+                fold_groups((3 * view.width * view.height).div_ceil(256)),
             )
             .await?,
             build(
                 "naive_raster",
-                folded((uniform.corner_count / 3).div_ceil(256)),
+                fold_groups((uniform.corner_count / 3).div_ceil(256)),
             )
             .await?,
             build(

@@ -1,9 +1,8 @@
 //! The layout of a frame, computed once from the kernel key, the scene's counts, the size of the
 //! picture and the capacity of the queues: which buffers it has and how large they are, what lies
-//! where in them, which bytes are cleared, and how many workgroups each pass takes. Buffers,
-//! uniforms, passes and readback all go by it.
+//! where in them, and which bytes are cleared. Buffers, uniforms, passes and readback all go by it.
 
-use std::{collections::BTreeMap, mem::offset_of, ops::Range};
+use std::{collections::BTreeMap, ops::Range};
 
 use super::{
     glass::{COMPOSED_BYTES, GlassRecord, HEAD_BYTES, OPAQUE_BYTES, band_length, layer_bytes},
@@ -24,7 +23,6 @@ use crate::{
     shader::{
         image_passes::IMAGE_SLOTS,
         key::{FramebufferLayout, KernelKey},
-        pass::{Pass, TriangleSource},
     },
 };
 
@@ -162,17 +160,8 @@ pub struct BufferSpec {
     pub cleared: Range<u64>,
 }
 
-/// How many workgroups a pass takes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Dispatch {
-    /// So many.
-    Direct { groups: [u32; 2] },
-    /// As many as a buffer says at this byte.
-    Indirect { buffer: BufferId, offset: u64 },
-}
-
 /// Bytes of a word.
-const WORD: u64 = 4;
+pub(super) const WORD: u64 = 4;
 /// Bytes of an entry in the queue of tiles.
 const TILE_ENTRY: u64 = 8;
 /// Bytes of a visible meshlet.
@@ -190,14 +179,14 @@ pub const IMAGE_BUFFERS: [BufferId; IMAGE_SLOTS + 1] = [
 ];
 
 /// Side of a tile of the resolve, which can be dispatched over listed tiles alone; pixels.
-const RESOLVE_TILE: u32 = 8;
+pub(super) const RESOLVE_TILE: u32 = 8;
 /// Side of a block of pixels that hides what lies behind it, pixels.
 const HIDDEN_BLOCK: u32 = 8;
 /// Side of a block of Hi-Z depths, pixels.
-const HIZ_BLOCK: u32 = 64;
+pub(super) const HIZ_BLOCK: u32 = 64;
 
 /// Triangles whose samples are added up by one workgroup.
-const ORDER_BLOCK: u64 = 1024;
+pub(super) const ORDER_BLOCK: u64 = 1024;
 
 /// Pixels from one row of the color buffer to the next: rows begin at multiples of 256 bytes, as
 /// texture copies demand.
@@ -213,21 +202,10 @@ const CLEARED_IN_PASSES: &[BufferId] = &[
     BufferId::DepthAndId,
     BufferId::PackedDepthId,
 ];
-/// Most workgroups that share a medium triangle or a tile of a large one, as the kernels have it.
-const MOST_PARTS: u32 = 4;
-/// Workgroups that a pass over a queue has even where a picture before had an empty queue: a fuller
-/// one is then drawn by 1,024 workgroups in turn.
-const LEAST_QUEUE_GROUPS: u32 = 1024;
-/// Invocations of a workgroup of the passes over queues.
-const QUEUE_GROUP: u32 = 64;
-/// Most pixels, or pairs of words of sums, that an invocation of the first pass clears.
-const CLEARED_PIXELS: u64 = 4;
-
 /// Rows of a background of one color that are kept, to be copied all over the picture.
 const BACKGROUND_ROWS: u32 = 32;
 
-/// The layout of a frame: its buffers, their regions and cleared bytes, and the workgroups of every
-/// pass.
+/// The layout of a frame: its buffers, their regions and cleared bytes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrameLayout {
     buffers: BTreeMap<BufferId, BufferSpec>,
@@ -340,16 +318,16 @@ impl FrameLayout {
         cleared.map(|(id, spec)| (*id, spec.cleared.clone()))
     }
 
-    fn pixels(&self) -> u64 {
+    pub(super) fn pixels(&self) -> u64 {
         u64::from(self.size[0]) * u64::from(self.size[1])
     }
 
     /// Tiles of `side` pixels a side, over the width and the height.
-    fn tiles(&self, side: u32) -> [u32; 2] {
+    pub(super) fn tiles(&self, side: u32) -> [u32; 2] {
         self.size.map(|pixels| pixels.div_ceil(side))
     }
 
-    fn tile_count(&self, side: u32) -> u64 {
+    pub(super) fn tile_count(&self, side: u32) -> u64 {
         self.tiles(side).map(u64::from).iter().product()
     }
 
@@ -367,6 +345,11 @@ impl FrameLayout {
                 cleared,
             },
         );
+    }
+
+    /// A buffer of so many records.
+    fn add_records<Record>(&mut self, id: BufferId, count: u64) {
+        self.add(id, count * size_of::<Record>() as u64);
     }
 
     /// A buffer of regions of so many bytes, one behind the other.
@@ -402,12 +385,12 @@ impl FrameLayout {
     }
 
     fn add_uniforms(&mut self, key: &KernelKey, effect_bytes: u64) {
-        self.add(BufferId::Frame, size_of::<FrameUniform>() as u64);
+        self.add_records::<FrameUniform>(BufferId::Frame, 1);
         if effect_bytes > 0 {
             self.add(BufferId::Effects, effect_bytes);
         }
         if key.surface.lights > 0 {
-            self.add(BufferId::PunctualLights, size_of::<PunctualLights>() as u64);
+            self.add_records::<PunctualLights>(BufferId::PunctualLights, 1);
         }
         // The array at the end of the struct has at least one element, and the buffer whole records
         // of 16 bytes.
@@ -424,7 +407,7 @@ impl FrameLayout {
             ],
         );
         if key.is_scaled() && self.target == Target::Picture {
-            self.add(BufferId::Scaling, size_of::<ScalingUniform>() as u64);
+            self.add_records::<ScalingUniform>(BufferId::Scaling, 1);
         }
     }
 
@@ -448,21 +431,15 @@ impl FrameLayout {
         // The shadow map reuses the deformed vertices of the picture.
         if self.target != Target::ShadowMap {
             if key.deforms() {
-                self.add(
-                    BufferId::Deforms,
-                    scene.deforms * size_of::<DeformRecord>() as u64,
-                );
+                self.add_records::<DeformRecord>(BufferId::Deforms, scene.deforms);
             }
             if key.generated.has_joints {
-                self.add(
-                    BufferId::Joints,
-                    scene.joint_vectors * size_of::<[f32; 4]>() as u64,
-                );
+                self.add_records::<[f32; 4]>(BufferId::Joints, scene.joint_vectors);
             }
             if key.generated.has_morph_targets {
-                self.add(
+                self.add_records::<MorphTargetRecord>(
                     BufferId::MorphTargets,
-                    scene.morph_targets.max(1) * size_of::<MorphTargetRecord>() as u64,
+                    scene.morph_targets.max(1),
                 );
             }
         }
@@ -501,7 +478,7 @@ impl FrameLayout {
             );
         }
         if key.has_queues() || key.work.listed_tiles || key.culls() {
-            self.add(BufferId::DispatchArgs, size_of::<DispatchArgs>() as u64);
+            self.add_records::<DispatchArgs>(BufferId::DispatchArgs, 1);
         }
         if key.paths.has_clipping {
             self.add(
@@ -513,15 +490,9 @@ impl FrameLayout {
 
     fn add_culling(&mut self, key: &KernelKey) {
         let (draws, meshlets) = (self.scene.draws.max(1), u64::from(self.scene.meshlets));
-        self.add(BufferId::Culling, size_of::<CullingUniform>() as u64);
-        self.add(
-            BufferId::Instances,
-            draws * size_of::<InstanceRecord>() as u64,
-        );
-        self.add(
-            BufferId::Meshlets,
-            self.scene.meshlet_records * size_of::<MeshletRecord>() as u64,
-        );
+        self.add_records::<CullingUniform>(BufferId::Culling, 1);
+        self.add_records::<InstanceRecord>(BufferId::Instances, draws);
+        self.add_records::<MeshletRecord>(BufferId::Meshlets, self.scene.meshlet_records);
         let words = WORD * u64::from(self.scene.meshlet_words);
         self.add_regions(
             BufferId::MeshletLists,
@@ -548,7 +519,7 @@ impl FrameLayout {
 
     fn add_draw_order(&mut self, key: &KernelKey) {
         let triangles = self.scene.triangles;
-        self.add(BufferId::DrawOrder, size_of::<OrderRecord>() as u64);
+        self.add_records::<OrderRecord>(BufferId::DrawOrder, 1);
         self.add(BufferId::SampleCounts, WORD * triangles);
         self.add(
             BufferId::BlockSums,
@@ -719,7 +690,7 @@ impl FrameLayout {
 
     fn add_dots(&mut self, key: &KernelKey) {
         let Some(dots) = self.dots else { return };
-        self.add(BufferId::DotFrame, size_of::<DotFrame>() as u64);
+        self.add_records::<DotFrame>(BufferId::DotFrame, 1);
         self.add(
             BufferId::DotSegments,
             dots.segment_bytes.max(size_of::<DotPoints>() as u64),
@@ -741,7 +712,7 @@ impl FrameLayout {
             self.add(BufferId::DotCount, WORD);
         }
         if key.options.dot_culling == DotCulling::Gpu {
-            self.add(BufferId::DotArgs, size_of::<DispatchSize>() as u64);
+            self.add_records::<DispatchSize>(BufferId::DotArgs, 1);
         } else {
             // The CPU writes the number of dots.
             self.clear_only(BufferId::DotCount, None);
@@ -771,24 +742,6 @@ impl FrameLayout {
         }
     }
 
-    /// Workgroups that the entries of a pass's queue can keep busy, as a rule.
-    fn usually_queued(&self, pass: Pass) -> u32 {
-        let room = &self.capacities;
-        // Large triangles are few, as a rule, and workgroups that find none cost a little too.
-        let most_large = room.large.div_ceil(4);
-        match pass {
-            Pass::Clip => room.clip.div_ceil(64),
-            Pass::TileLarge => most_large,
-            // Several workgroups may share an entry.
-            Pass::RasterMedium(_) => room.medium.saturating_mul(MOST_PARTS).max(most_large),
-            Pass::RasterAll(_) => room
-                .medium
-                .saturating_mul(MOST_PARTS)
-                .max(room.tiles.div_ceil(8)),
-            _ => room.tiles.div_ceil(8),
-        }
-    }
-
     /// The culling uniform.
     pub fn culling_uniform(&self) -> CullingUniform {
         CullingUniform {
@@ -798,156 +751,16 @@ impl FrameLayout {
             hiz_first_block: self.first_word(Region::HizBlocks),
         }
     }
-
-    /// Workgroups of a pass over a queue, of which each takes entries in turn. `demand` is what a
-    /// picture before counted: where its queues held little, fewer workgroups find work, and
-    /// those that find none cost a little too. A queue that held more since is drawn whole.
-    fn queue_groups(&self, key: &KernelKey, pass: Pass, demand: Option<&CounterRecord>) -> u32 {
-        let most = key.work.queue_groups.max(1);
-        let usual = most.min(self.usually_queued(pass)).max(1);
-        let Some(demand) = demand else { return usual };
-        let medium = demand.medium.saturating_mul(MOST_PARTS);
-        let tiles = demand.tiles.saturating_mul(MOST_PARTS);
-        let held = match pass {
-            Pass::Clip => demand.clip.div_ceil(64),
-            Pass::TileLarge => demand.large,
-            Pass::RasterMedium(_) => medium.max(demand.large),
-            Pass::RasterAll(_) => medium.max(tiles),
-            _ => tiles,
-        };
-        held.clamp(LEAST_QUEUE_GROUPS.min(usual), most)
-    }
-
-    /// How many workgroups a pass takes. `demand` is what the queues of a picture before held,
-    /// where it is known.
-    pub fn dispatch(
-        &self,
-        key: &KernelKey,
-        pass: Pass,
-        demand: Option<&CounterRecord>,
-    ) -> Dispatch {
-        let scene = &self.scene;
-        let (triangles, group) = (scene.triangles as u32, key.work.group_size);
-        let over = |count: u32| Dispatch::once(folded(count.div_ceil(group)));
-        let dots = self.dots.unwrap_or_default();
-        let over_dots = |count: u32| Dispatch::once(folded(count.div_ceil(DOT_GROUP)));
-        match pass {
-            Pass::Particles => over(scene.particles),
-            Pass::Skin => over(scene.deformable),
-            Pass::Project if key.work.clears_in_passes => {
-                let sums = self
-                    .region(Region::XraySums)
-                    .map_or(0, |span| (span.bytes.end - span.bytes.start) / (2 * WORD));
-                let clearing = (self.pixels() + sums).div_ceil(CLEARED_PIXELS) as u32;
-                over((vertex_records(key, scene) as u32).max(clearing).max(1))
-            }
-            Pass::Project => over(vertex_records(key, scene) as u32),
-            Pass::Cull(_) => over(scene.meshlets),
-            Pass::DepthReduce => Dispatch::once(self.tiles(HIZ_BLOCK)),
-            Pass::ProjectMeshlets => Dispatch::args(offset_of!(DispatchArgs, meshlets)),
-            Pass::RasterSmall(_) if key.culls() => {
-                Dispatch::args(offset_of!(DispatchArgs, meshlets))
-            }
-            Pass::RasterPoints(_) => {
-                over(triangles.saturating_mul(key.work.invocations_per_triangle))
-            }
-            Pass::RasterSmall(_) | Pass::SampleSetup(TriangleSource::Triangles) => over(triangles),
-            Pass::SampleSetup(TriangleSource::ClippedTriangles) => {
-                Dispatch::args(offset_of!(DispatchArgs, clipped_triangles))
-            }
-            Pass::OrderSums | Pass::OrderRanks => {
-                Dispatch::once(folded(triangles.div_ceil(ORDER_BLOCK as u32)))
-            }
-            Pass::OrderLimit
-            | Pass::OrderCut
-            | Pass::Args
-            | Pass::AdvanceQueues { .. }
-            | Pass::GlassBand
-            | Pass::DotsArgs => Dispatch::once([1, 1]),
-            Pass::GlassCompose => {
-                let band = band_length(self.pixels(), key.framebuffer.glass_bands);
-                Dispatch::once(folded(band.div_ceil(GLASS_GROUP) as u32))
-            }
-            Pass::Clip | Pass::TileLarge | Pass::RasterMedium(_) | Pass::RasterLarge(_)
-                if key.work.queue_groups > 0 =>
-            {
-                Dispatch::once([self.queue_groups(key, pass, demand), 1])
-            }
-            Pass::RasterAll(_) => Dispatch::once(folded(
-                triangles.div_ceil(QUEUE_GROUP) + self.queue_groups(key, pass, demand),
-            )),
-            Pass::Clip => Dispatch::args(offset_of!(DispatchArgs, clip)),
-            Pass::RasterMedium(_) => Dispatch::args(offset_of!(DispatchArgs, medium)),
-            Pass::TileLarge => Dispatch::args(offset_of!(DispatchArgs, large)),
-            Pass::RasterLarge(_) => Dispatch::args(offset_of!(DispatchArgs, tiles)),
-            Pass::DotsEnds => over_dots(dots.segments),
-            Pass::DotsCull => {
-                let groups = dots.runs.div_ceil(FEW_RUNS).min(key.work.dot_groups);
-                Dispatch::once(folded(groups.max(dots.runs.div_ceil(DOT_GROUP))))
-            }
-            Pass::DotsDraw | Pass::DotsProbe => match key.options.dot_culling {
-                DotCulling::Brute => over_dots(dots.dots),
-                DotCulling::Cpu => over_dots(dots.chosen),
-                DotCulling::Gpu => Dispatch::Indirect {
-                    buffer: BufferId::DotArgs,
-                    offset: 0,
-                },
-            },
-            Pass::ListTiles => Dispatch::once(folded(
-                (self.tile_count(RESOLVE_TILE) as u32).div_ceil(TILE_GROUP),
-            )),
-            Pass::Resolve if key.work.listed_tiles => {
-                Dispatch::args(offset_of!(DispatchArgs, resolve))
-            }
-            Pass::Resolve => Dispatch::once(self.tiles(key.tile_side())),
-            Pass::ResolveBackground => Dispatch::args(offset_of!(DispatchArgs, background)),
-            Pass::ImageBegin => Dispatch::once(self.tiles(RESOLVE_TILE)),
-            Pass::Image(_) => {
-                let scale = key.image_step(pass).map_or(1, |step| step.scale);
-                Dispatch::once(self.tiles(scale).map(|side| side.div_ceil(RESOLVE_TILE)))
-            }
-            Pass::Scale => Dispatch::once(self.shown.map(|side| side.div_ceil(RESOLVE_TILE))),
-        }
-    }
-}
-
-/// Runs of dots that a workgroup culls at least, where there are so many. It lists their dots, up
-/// to 64 to a run, 64 at a time.
-const FEW_RUNS: u32 = 8;
-/// Invocations of a workgroup of the passes over dots.
-pub const DOT_GROUP: u32 = 64;
-/// Invocations of a workgroup of the pass that composes layers of glass.
-const GLASS_GROUP: u64 = 64;
-/// Invocations of a workgroup of the pass that lists tiles.
-const TILE_GROUP: u32 = 64;
-
-impl Dispatch {
-    fn once(groups: [u32; 2]) -> Self {
-        Self::Direct { groups }
-    }
-
-    /// By a member of [`DispatchArgs`].
-    fn args(offset: usize) -> Self {
-        Self::Indirect {
-            buffer: BufferId::DispatchArgs,
-            offset: offset as u64,
-        }
-    }
 }
 
 /// Projected records: one per vertex of each draw, or three per triangle where effects move
 /// triangles apart.
-fn vertex_records(key: &KernelKey, scene: &SceneCounts) -> u64 {
+pub(super) fn vertex_records(key: &KernelKey, scene: &SceneCounts) -> u64 {
     if key.unshares_vertices() {
         3 * scene.triangles
     } else {
         scene.vertices
     }
-}
-
-/// Folds more than 65,535 workgroups into two dimensions; the kernel guards the tail.
-pub fn folded(groups: u32) -> [u32; 2] {
-    [groups.min(65_535), groups.div_ceil(65_535)]
 }
 
 impl FrameUniform {

@@ -10,5 +10,7 @@ pub mod queues;
 
 pub mod frame_layout;
 
+pub mod dispatch;
+
 pub use gpu_record::{RecordLayout, RecordMember};
 pub use resource_id::{BufferId, ClearedBy, ResourceId, TextureId};

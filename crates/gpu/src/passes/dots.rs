@@ -6,7 +6,7 @@ use std::sync::Arc;
 use web_time::Instant;
 
 use super::{
-    dot_tree::DotTree,
+    dot_choice::DotBoxes,
     recording::{Device, Resources},
 };
 use crate::{
@@ -20,7 +20,8 @@ use crate::{
     frame::SnappedVertex,
     layout::{
         BufferId,
-        frame_layout::{DOT_GROUP, DotCounts, folded},
+        dispatch::{DOT_GROUP, fold_groups},
+        frame_layout::DotCounts,
         records::{DotFrame, DotRunRecord, VertexRecord},
     },
     math::rounded_columns,
@@ -59,7 +60,7 @@ pub struct DotStore {
     dots: u32,
     /// Segments and runs are not on the device yet.
     is_stale: bool,
-    tree: Option<DotTree>,
+    boxes: Option<DotBoxes>,
     /// Run and position of every dot that the CPU chose for the last picture, where it does.
     chosen: Option<Vec<[u32; 2]>>,
     frame: DotFrame,
@@ -74,7 +75,7 @@ impl DotStore {
             LineSource::Creases => Lines::edges(scene, Some(f32::from_bits(source.crease).into()))?,
             LineSource::Polyline => Lines::polyline(&source.polyline),
         };
-        let (spacing, dot_runs, dots, tree, chosen, frame) =
+        let (spacing, dot_runs, dots, boxes, chosen, frame) =
             ([0; 3], Vec::new(), 0, None, None, DotFrame::default());
         Ok(Self {
             source,
@@ -83,7 +84,7 @@ impl DotStore {
             dot_runs,
             dots,
             is_stale: true,
-            tree,
+            boxes,
             chosen,
             frame,
             chosen_ms: None,
@@ -122,7 +123,7 @@ impl DotStore {
             let count = counted(&store.lines, &dots)?;
             (store.dot_runs, store.dots, store.spacing) =
                 (dot_runs(&store.lines, &dots), count as u32, spacing);
-            (store.tree, store.is_stale) = (None, true);
+            (store.boxes, store.is_stale) = (None, true);
         }
         store.frame = DotFrame {
             clip_from_scene: rounded_columns(
@@ -148,11 +149,11 @@ impl DotStore {
         (store.chosen, store.chosen_ms) = (None, None);
         if key.options.dot_culling == DotCulling::Cpu {
             let lines = &store.lines;
-            let tree = store
-                .tree
-                .get_or_insert_with(|| DotTree::new(scene, lines, &store.dot_runs));
+            let boxes = store
+                .boxes
+                .get_or_insert_with(|| DotBoxes::new(scene, lines, &store.dot_runs));
             let began = Instant::now();
-            store.chosen = Some(tree.choose(&store.dot_runs, &dots, view));
+            store.chosen = Some(boxes.choose(&store.dot_runs, &dots, view));
             store.chosen_ms = Some(began.elapsed().as_secs_f64() * 1e3);
         }
         Ok(Some(store))
@@ -269,7 +270,7 @@ impl DotStore {
             });
             pass.set_pipeline(&pipeline.pipeline);
             pass.set_bind_group(0, &group, &[]);
-            let [x, y] = folded(probed.div_ceil(DOT_GROUP));
+            let [x, y] = fold_groups(probed.div_ceil(DOT_GROUP));
             pass.dispatch_workgroups(x, y, 1);
             drop(pass);
             gpu.queue.submit([encoder.finish()]);

@@ -2,7 +2,7 @@
 
 pub mod recording;
 
-mod dot_tree;
+mod dot_choice;
 pub mod dots;
 pub mod layer_sums;
 pub mod particles;

@@ -13,7 +13,7 @@ use crate::{
     frame::{ParticleReadback, ParticleState},
     layout::{
         BufferId,
-        frame_layout::folded,
+        dispatch::fold_groups,
         records::{ParticleStepUniform, StepParams},
     },
     resources::buffers::{self, Buffers},
@@ -253,7 +253,7 @@ impl ParticleSimulation {
             });
             pass.set_pipeline(&pipeline.pipeline);
             pass.set_bind_group(0, &group, &[]);
-            let [x, y] = folded(uniform.count.div_ceil(key.work.group_size));
+            let [x, y] = fold_groups(uniform.count.div_ceil(key.work.group_size));
             pass.dispatch_workgroups(x, y, 1);
         }
         gpu.queue.submit([encoder.finish()]);

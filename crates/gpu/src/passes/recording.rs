@@ -13,7 +13,8 @@ use crate::{
     },
     layout::{
         BufferId, ResourceId, TextureId,
-        frame_layout::{Dispatch, FrameLayout, IMAGE_BUFFERS},
+        dispatch::Dispatch,
+        frame_layout::{FrameLayout, IMAGE_BUFFERS},
         records::CounterRecord,
     },
     plan::Tuning,

@@ -136,7 +136,7 @@ impl Explanation {
             buffers,
             reasons,
             omitted: plan.omissions(),
-            sizes: Some(SizesNote::new(plan, counted(picture))),
+            sizes: Some(SizesNote::new(plan, queue_counts(picture))),
             prediction: Some(plan.prediction),
             tolerance: Some(plan.tolerance),
         }
@@ -144,7 +144,7 @@ impl Explanation {
 }
 
 /// Medium and large triangles that the queues of the newest finished picture counted.
-fn counted(picture: &ViewResources) -> Option<[u32; 2]> {
+fn queue_counts(picture: &ViewResources) -> Option<[u32; 2]> {
     picture.demand.map(|demand| [demand.medium, demand.large])
 }
 
@@ -192,7 +192,7 @@ impl Explained {
                 .dots
                 .as_ref()
                 .map(|dots| (dots.counts(), dots.line_count())),
-            counted: counted(picture),
+            counted: queue_counts(picture),
         };
         if let Some((_, explanation)) = self.0.as_ref().filter(|(known, _)| known.is_same(&subject))
         {

@@ -1,6 +1,6 @@
 //! Bookmarks: cameras that a preset keeps under names, in the order in which they were added.
 
-use super::{Preset, known};
+use super::{Preset, list_names};
 use crate::{legible::is_hidden, scene::camera::Camera};
 
 /// Most bookmarks of a preset.
@@ -40,7 +40,7 @@ impl Preset {
             let names = self.bookmarks.iter().map(|mark| &mark.name);
             format!(
                 "the preset has no bookmark {name:?}{}",
-                known(
+                list_names(
                     names,
                     "add a table [bookmarks.NAME] with the keys of [camera]"
                 )

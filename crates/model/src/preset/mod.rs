@@ -7,7 +7,7 @@ pub mod animation;
 mod bookmark;
 mod fit;
 mod fitted;
-mod golden_test;
+mod golden_budget;
 mod landing;
 mod missing_parts;
 mod output;
@@ -29,10 +29,11 @@ use crate::{
         Stack, read,
         tonemap::{self, Tonemap},
     },
-    math::rotation_y,
+    math::{rotation_y, turned_about},
     scene::{
         Background, Bounds, Ground, Scene,
         camera::Camera,
+        needs,
         parts::{Scope, ShownParts},
         pose::{Motion, Pose, scene_from_nodes},
         punctual::{PlacedLight, SceneLight},
@@ -43,7 +44,7 @@ use crate::{
 pub use animation::{Animation, Track};
 pub use bookmark::{Bookmark, MAX_BOOKMARK_CHARS, MAX_BOOKMARKS, check_bookmark_name};
 pub use fit::{Fit, LengthUnit};
-pub use golden_test::GoldenTest;
+pub use golden_budget::GoldenTest;
 pub use output::{NAMED_SIZES, Output, named_size};
 
 pub use crate::accuracy::{AccuracyRequest, PinnedOptions, Tier, Visibility};
@@ -99,7 +100,7 @@ pub struct MissingInScene {
 }
 
 /// `; it has "Walk", "Run"`, or `; <none>` where there are no names.
-fn known<'a>(names: impl Iterator<Item = &'a String>, none: &str) -> String {
+fn list_names<'a>(names: impl Iterator<Item = &'a String>, none: &str) -> String {
     let names: Vec<String> = names.take(12).map(|name| format!("{name:?}")).collect();
     if names.is_empty() {
         format!("; {none}")
@@ -122,7 +123,7 @@ impl ClipPlayback {
             ("scene.second_clip", &self.second_clip),
         ] {
             if !name.is_empty() && scene.rig.clip(name).is_none() {
-                let known = known(
+                let known = list_names(
                     scene.rig.clips.iter().map(|clip| &clip.name),
                     "it has no clips",
                 );
@@ -396,11 +397,11 @@ impl Preset {
                 key: "scene.variant",
                 what: "variant",
                 name: variant.clone(),
-                known: known(scene.variants.iter(), "it has no variants"),
+                known: list_names(scene.variants.iter(), "it has no variants"),
             });
         }
         if !self.scene_camera.is_empty() && scene.camera(&self.scene_camera).is_none() {
-            let known = known(
+            let known = list_names(
                 scene.cameras.iter().map(|camera| &camera.name),
                 "it has no cameras",
             );
@@ -457,7 +458,7 @@ impl Preset {
             }));
         }
         if self.spin_deg_per_s != 0.0 {
-            points = turned_all_around(&points, DVec3::ZERO);
+            points = turned_all_around(&points, scene.axis());
         }
         points
     }
@@ -507,7 +508,7 @@ impl Preset {
         let spin = if turns == 0.0 {
             DMat4::IDENTITY
         } else {
-            rotation_y(turns.fract() * std::f64::consts::TAU)
+            turned_about(scene.axis(), turns.fract() * std::f64::consts::TAU)
         };
         let pose = preset.pose(scene);
         let mut bounds = preset.with_particles(
@@ -534,7 +535,9 @@ impl Preset {
             if scene.walls > 0 {
                 // Walls do not turn with the scene; this box holds them at every angle.
                 let aside = DVec3::new(std::f64::consts::SQRT_2, 1.0, std::f64::consts::SQRT_2);
-                (bounds.min, bounds.max) = (bounds.min * aside, bounds.max * aside);
+                let axis = scene.axis();
+                let moved = |corner: DVec3| axis + (corner - axis) * aside;
+                (bounds.min, bounds.max) = (moved(bounds.min), moved(bounds.max));
             }
         }
         let pins = &preset.accuracy.pins;
@@ -556,6 +559,8 @@ impl Preset {
             ..view
         }
         .with_shadow(shadow);
+        let is_far = needs::is_far(scene, &view);
+        let view = view.with_grid(view.precision.subpixel_bits, is_far);
         if scene.ground_instances().is_empty() {
             view
         } else {

@@ -18,12 +18,12 @@ use crate::{
 };
 
 /// The number `by` of the way from `a` to `b`; exactly these at 0 and 1.
-fn mixed(a: f64, b: f64, by: f64) -> f64 {
+fn mix(a: f64, b: f64, by: f64) -> f64 {
     if by >= 1.0 { b } else { a + (b - a) * by }
 }
 
 fn mixed_color(a: [f32; 4], b: [f32; 4], by: f64) -> [f32; 4] {
-    std::array::from_fn(|k| mixed(f64::from(a[k]), f64::from(b[k]), by) as f32)
+    std::array::from_fn(|k| mix(f64::from(a[k]), f64::from(b[k]), by) as f32)
 }
 
 /// The direction in between; none between opposite ones.
@@ -42,7 +42,7 @@ impl Camera {
         }
         let [from, to] = [self, other].map(|camera| camera.eye - camera.target);
         let apart = mixed_direction(from, to, by);
-        let distance = libm::exp(mixed(libm::log(from.length()), libm::log(to.length()), by));
+        let distance = libm::exp(mix(libm::log(from.length()), libm::log(to.length()), by));
         let target = self.target.lerp(other.target, by);
         let camera = Self {
             eye: target + apart.unwrap_or(nearer.target - nearer.eye) * distance,
@@ -53,17 +53,17 @@ impl Camera {
                     Projection::Perspective { fov_y_deg: a },
                     Projection::Perspective { fov_y_deg: b },
                 ) => Projection::Perspective {
-                    fov_y_deg: mixed(a, b, by),
+                    fov_y_deg: mix(a, b, by),
                 },
                 (
                     Projection::Orthographic { height_m: a },
                     Projection::Orthographic { height_m: b },
                 ) => Projection::Orthographic {
-                    height_m: mixed(a, b, by),
+                    height_m: mix(a, b, by),
                 },
                 _ => nearer.projection,
             },
-            near_m: mixed(self.near_m, other.near_m, by),
+            near_m: mix(self.near_m, other.near_m, by),
         };
         // Nothing lies between cameras on opposite sides, or where a distance is 0.
         match apart.is_some() && camera.eye.is_finite() && camera.eye != camera.target {
@@ -90,7 +90,7 @@ fn mixed_stack(a: &Stack, b: &Stack, nearer: &Stack, by: f64) -> Stack {
             let values: Vec<f64> = a
                 .iter()
                 .zip(&b)
-                .map(|(a, b)| mixed(*a, *b, by).clamp(low, high))
+                .map(|(a, b)| mix(*a, *b, by).clamp(low, high))
                 .collect();
             let written = field.set(words, &values);
             debug_assert!(written.is_ok(), "{}: {written:?}", field.name);
@@ -136,12 +136,12 @@ impl Preset {
         let mut mixture = nearer.clone();
         mixture.camera = camera;
         mixture.stack = mixed_stack(&a.stack, &b.stack, &nearer.stack, by);
-        mixture.spin_deg_per_s = mixed(a.spin_deg_per_s, b.spin_deg_per_s, by);
-        mixture.clock.time_s = mixed(a.clock.time_s, b.clock.time_s, by);
-        mixture.playback.speed = mixed(a.playback.speed, b.playback.speed, by);
-        mixture.playback.blend = mixed(a.playback.blend, b.playback.blend, by);
+        mixture.spin_deg_per_s = mix(a.spin_deg_per_s, b.spin_deg_per_s, by);
+        mixture.clock.time_s = mix(a.clock.time_s, b.clock.time_s, by);
+        mixture.playback.speed = mix(a.playback.speed, b.playback.speed, by);
+        mixture.playback.blend = mix(a.playback.blend, b.playback.blend, by);
         mixture.playback.clip_time_s = match (a.playback.clip_time_s, b.playback.clip_time_s) {
-            (Some(a), Some(b)) => Some(mixed(a, b, by)),
+            (Some(a), Some(b)) => Some(mix(a, b, by)),
             _ => nearer.playback.clip_time_s,
         };
         let bottom = |preset: &Self| preset.output.backdrop().bottom;

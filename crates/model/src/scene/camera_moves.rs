@@ -45,7 +45,7 @@ pub fn axes(camera: &Camera) -> (DVec3, DVec3) {
 }
 
 /// `forward` turned by angles about +y and up, kept off the poles.
-fn turned(forward: DVec3, yaw_rad: f64, pitch_rad: f64) -> DVec3 {
+fn turn_direction(forward: DVec3, yaw_rad: f64, pitch_rad: f64) -> DVec3 {
     let limit = std::f64::consts::FRAC_PI_2 - POLE_RAD;
     let yaw = if forward.x == 0.0 && forward.z == 0.0 {
         yaw_rad
@@ -64,14 +64,14 @@ fn turned(forward: DVec3, yaw_rad: f64, pitch_rad: f64) -> DVec3 {
 pub fn orbit(camera: &mut Camera, right_rad: f64, down_rad: f64) {
     let distance = distance(camera);
     camera.up = DVec3::Y;
-    camera.eye = camera.target - turned(camera.forward(), right_rad, -down_rad) * distance;
+    camera.eye = camera.target - turn_direction(camera.forward(), right_rad, -down_rad) * distance;
 }
 
 /// Turns the view round the eye.
 pub fn turn(camera: &mut Camera, right_rad: f64, down_rad: f64) {
     let distance = distance(camera);
     camera.up = DVec3::Y;
-    camera.target = camera.eye + turned(camera.forward(), right_rad, -down_rad) * distance;
+    camera.target = camera.eye + turn_direction(camera.forward(), right_rad, -down_rad) * distance;
 }
 
 /// Shifts the picture by `right` and `down`, in heights of the picture.

@@ -196,7 +196,7 @@ impl Builder<'_> {
                 let position = (to_f64(self.positions[corners[0] as usize]) - bounds.min) / sides
                     * f64::from((1 << 21) - 1);
                 // NaN becomes 0.
-                let bits = [position.x, position.y, position.z].map(|v| spread(v as u64));
+                let bits = [position.x, position.y, position.z].map(|v| spread_bits(v as u64));
                 (bits[0] | bits[1] << 1 | bits[2] << 2, triangle as u32)
             })
             .collect();
@@ -265,7 +265,7 @@ impl Builder<'_> {
 }
 
 /// Moves each of the 21 low bits to every third position.
-fn spread(v: u64) -> u64 {
+fn spread_bits(v: u64) -> u64 {
     let v = v & 0x1f_ffff;
     let v = (v | v << 32) & 0x001f_0000_0000_ffff;
     let v = (v | v << 16) & 0x001f_0000_ff00_00ff;

@@ -106,7 +106,7 @@ fn between(side: usize, place: DVec2, texel: impl Fn(usize, usize) -> DVec3) -> 
     let near = at.floor();
     let part = at - near;
     let texel = |x: i64, y: i64| {
-        let [x, y] = folded(side as i64, x, y);
+        let [x, y] = fold_place(side as i64, x, y);
         texel(x, y)
     };
     let (x, y) = (near.x as i64, near.y as i64);
@@ -115,7 +115,7 @@ fn between(side: usize, place: DVec2, texel: impl Fn(usize, usize) -> DVec3) -> 
 }
 
 /// The texel that lies at a place at most one texel beyond an edge.
-fn folded(side: i64, mut x: i64, mut y: i64) -> [usize; 2] {
+fn fold_place(side: i64, mut x: i64, mut y: i64) -> [usize; 2] {
     let back = |at: i64| (-1 - at).max(at.min(2 * side - 1 - at)).clamp(0, side - 1);
     if x < 0 || x >= side {
         (x, y) = (back(x), side - 1 - y);
@@ -300,9 +300,34 @@ fn picture_at(picture: &LightPicture, d: DVec3) -> DVec3 {
     row(near.y).lerp(row(near.y + 1.0), part.y)
 }
 
+/// Sides with fewer pixels do not tell the second band from the first.
+const NARROW: usize = 16;
+
+/// A picture with pixels enough to add up directions: the same, but between the pixels of a narrow
+/// one.
+fn widened(picture: &LightPicture) -> Option<LightPicture> {
+    let [width, height] = picture.size.map(|side| match side {
+        ..NARROW => side * (16 * NARROW).div_ceil(side),
+        wide => wide,
+    });
+    let light = |i: usize| {
+        let [x, y] = [i % width, i / width].map(|at| at as f64 + 0.5);
+        let (right, ahead) = libm::sincos(TAU * (x / width as f64 - 0.5));
+        let (sin, cos) = libm::sincos(PI * y / height as f64);
+        picture_at(picture, DVec3::new(sin * right, cos, -sin * ahead))
+    };
+    ([width, height] != picture.size).then(|| LightPicture {
+        size: [width, height],
+        light: (0..width * height).map(light).collect(),
+        clamped: 0,
+    })
+}
+
 /// The quadratic form of a normal that gives the light on a matt surface: the mean over all
 /// directions of their light, weighted as the clamped cosine is up to the second band.
 fn form(picture: &LightPicture) -> [DVec3; 10] {
+    let wide = widened(picture);
+    let picture = wide.as_ref().unwrap_or(picture);
     let [width, height] = picture.size;
     let columns: Vec<(f64, f64)> = (0..width)
         .map(|x| libm::sincos(TAU * ((x as f64 + 0.5) / width as f64 - 0.5)))
@@ -391,7 +416,7 @@ mod tests {
                 [[along, -1], [7 - along, 0]],
                 [[along, 8], [7 - along, 7]],
             ] {
-                assert_eq!(folded(8, x, y), [to_x as usize, to_y as usize]);
+                assert_eq!(fold_place(8, x, y), [to_x as usize, to_y as usize]);
             }
         }
     }
@@ -414,6 +439,31 @@ mod tests {
             );
         }
         assert_eq!(light(word(DVec3::splat(1e9))), DVec3::splat(BRIGHTEST));
+    }
+
+    #[test]
+    fn a_narrow_picture_lights_as_a_wide_one_of_the_same_light() {
+        let of_rows = |size: [usize; 2]| {
+            let light = |i: usize| DVec3::splat(1.0 + (i / size[0]) as f64 / size[1] as f64);
+            Panorama::of(&LightPicture {
+                size,
+                light: (0..size[0] * size[1]).map(light).collect(),
+                clamped: 0,
+            })
+            .expect("nobody cancels it")
+        };
+        let near = |a: &Panorama, b: &Panorama, normal| {
+            let error = (a.irradiance(normal) - b.irradiance(normal)).length();
+            assert!(error < 1e-3, "{normal}: {error}");
+        };
+        let wide = of_rows([64, 64]);
+        let even = of_rows([1, 1]);
+        for normal in directions(12) {
+            for width in 1..=3 {
+                near(&of_rows([width, 64]), &wide, normal);
+            }
+            assert!((even.irradiance(normal) - 1.0).length() < 1e-3, "{normal}");
+        }
     }
 
     #[test]

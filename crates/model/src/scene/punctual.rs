@@ -91,9 +91,9 @@ impl SceneLight {
         PlacedLight {
             light: self.light.map(|light| (light * FRAC_1_PI) as f32),
             has_position: self.kind != LightKind::Directional,
-            position: rounded(position),
+            position: round_vector(position),
             inverse_range: range_m.map_or(0.0, |range| (1.0 / range).min(1e18) as f32),
-            toward: rounded(toward.try_normalize().unwrap_or(DVec3::Z)),
+            toward: round_vector(toward.try_normalize().unwrap_or(DVec3::Z)),
             cone: match self.kind {
                 LightKind::Directional | LightKind::Point => [0.0, 1.0],
                 LightKind::Spot { inner, outer } => {
@@ -106,7 +106,7 @@ impl SceneLight {
     }
 }
 
-fn rounded(vector: DVec3) -> [f32; 3] {
+fn round_vector(vector: DVec3) -> [f32; 3] {
     let within = vector.clamp(
         DVec3::splat(-MAX_COORDINATE_M),
         DVec3::splat(MAX_COORDINATE_M),

@@ -9,7 +9,7 @@ use super::super::{
     arithmetic::depth_key::depth_bound,
     render::{
         coverage::{Hit, Sample, scatter},
-        sample_tests::SampleTests,
+        sample_rules::SampleTests,
         triangles::OrientedTriangle,
     },
 };

@@ -7,8 +7,8 @@ use super::{
         render::{
             draw_order::limited,
             mask::is_masked,
+            sample_rules::{DrawLimit, SampleTests},
             sample_setup::{effects_with_setup, mask_records},
-            sample_tests::{DrawLimit, SampleTests},
             snap::half_size,
             triangles::triangles,
         },

@@ -4,7 +4,7 @@ use super::super::{
     bounds::coverage::BoundedSample,
     render::{
         draw_order::{draw_limit, is_free},
-        sample_tests::SampleTests,
+        sample_rules::SampleTests,
         triangles::OrientedTriangle,
     },
     shot::Shot,

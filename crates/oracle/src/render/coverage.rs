@@ -13,7 +13,7 @@ use super::{
         depth_key::{depth_key, integer_key},
         edge::{edge, owns},
     },
-    sample_tests::SampleTests,
+    sample_rules::SampleTests,
     triangles::OrientedTriangle,
 };
 use crate::{

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use super::{
     super::shot::Shot,
-    sample_tests::{DrawLimit, SampleTests},
+    sample_rules::{DrawLimit, SampleTests},
     triangles::{OrientedTriangle, triangles},
 };
 use crate::{

@@ -12,7 +12,7 @@ use super::{
     coverage::{Hit, scatter},
     draw_order::ranks,
     layers::LayerInput,
-    sample_tests::SampleTests,
+    sample_rules::SampleTests,
     shadow::Light,
     surface::{SurfaceTriangle, encoded, shade_runs},
     triangles::OrientedTriangle,

@@ -9,7 +9,7 @@ use super::{
     coverage::{Hit, scatter},
     draw_order::ranks,
     glass::{glass_colors, glass_layers},
-    sample_tests::SampleTests,
+    sample_rules::SampleTests,
     shadow::Light,
     surface::{SurfaceTriangle, encoded},
     triangles::OrientedTriangle,

@@ -15,8 +15,8 @@ pub mod triangles;
 pub mod coverage;
 pub mod draw_order;
 pub mod mask;
+pub mod sample_rules;
 pub mod sample_setup;
-pub mod sample_tests;
 pub mod screen;
 pub mod work_limits;
 

@@ -19,8 +19,8 @@ use super::{
     coverage::nearest_depths,
     project::project,
     rays::Rays,
+    sample_rules::SampleTests,
     sample_setup::sample_setups,
-    sample_tests::SampleTests,
     triangles::triangles,
     work_limits::check_samples,
 };

@@ -373,7 +373,7 @@ impl<'a> SurfaceTriangle<'a> {
         let [x, y, z, along] = perturbation.place.map(|roundings| roundings * ROUNDING);
         let moved = perturbation.interpolated;
         let edge_distance_px = (edge_distance_px + moved.edge_distance_px).max(DVec3::ZERO);
-        let depth_m = mixed(weights, self.depths_m) * (1.0 + along) * (1.0 + moved.depth);
+        let depth_m = mix_values(weights, self.depths_m) * (1.0 + along) * (1.0 + moved.depth);
         // Where nothing is turned, the normal keeps its bits.
         let turned = |normal: DVec3, turn: DVec3| match turn {
             DVec3::ZERO => normal,
@@ -471,7 +471,7 @@ impl<'a> SurfaceTriangle<'a> {
     pub fn interpolation(&self, x: usize, y: usize) -> Interpolation {
         let point = self.sample_point(DVec2::new(x as f64 + 0.5, y as f64 + 0.5));
         let weights = self.weights.at(&point);
-        let depth_m = mixed(weights, self.depths_m);
+        let depth_m = mix_values(weights, self.depths_m);
         Interpolation {
             weights,
             depths: self.depths_m.map(|depth| depth / depth_m),
@@ -492,7 +492,7 @@ impl<'a> SurfaceTriangle<'a> {
     /// between theirs.
     fn base_color(&self, weights: [f64; 3], offset: DVec4) -> DVec4 {
         let [a, b, c] = self.colors;
-        match (mixed(weights, self.colors), offset) {
+        match (mix_values(weights, self.colors), offset) {
             (color, DVec4::ZERO) => color,
             (color, offset) => (color + offset).clamp(a.min(b).min(c), a.max(b).max(c)),
         }
@@ -581,7 +581,7 @@ impl<'a> SurfaceTriangle<'a> {
                     shape: self.shape,
                     corner: None,
                 };
-                mixed(self.weights.at(&point), self.positions)
+                mix_values(self.weights.at(&point), self.positions)
             }
             // Outside the triangle only the ray of the pixel is defined.
             Shape::Boxes | Shape::Points => on_ray,
@@ -600,7 +600,7 @@ impl<'a> SurfaceTriangle<'a> {
             .iter()
             .map(|normal| normal.abs().max_element())
             .fold(0.0, f64::max);
-        let normal = mixed(weights, normals) / largest;
+        let normal = mix_values(weights, normals) / largest;
         // A division by zero makes NaN, for which the comparison is false.
         if normal.length_squared() >= DEGENERATE {
             (self.world_from_normal * normal).try_normalize()
@@ -626,7 +626,7 @@ fn on_ray(view: &View, screen: DVec2, depth_m: f64) -> DVec3 {
     }
 }
 
-fn mixed<T: std::ops::Mul<f64, Output = T> + std::ops::Add<Output = T>>(
+fn mix_values<T: std::ops::Mul<f64, Output = T> + std::ops::Add<Output = T>>(
     weights: [f64; 3],
     [a, b, c]: [T; 3],
 ) -> T {

@@ -55,13 +55,16 @@ impl<'a> VertexEvaluator<'a> {
             stack,
             moves: stack.moves(),
             has_unshared_vertices: stack.unshares_vertices(),
-            clip_from_world: rounded(&view.clip_from_world),
+            clip_from_world: round_matrix(&view.clip_from_world),
             world_from_normal: if draw.mirrored {
                 -normal_matrix
             } else {
                 normal_matrix
             },
-            picture_from_world: view.picture_from_world.as_ref().map(rounded),
+            picture_from_world: match view.precision.is_relative {
+                true => view.picture_from_world.map(|m| m.to_cols_array_2d()),
+                false => view.picture_from_world.as_ref().map(round_matrix),
+            },
         }
     }
 
@@ -304,7 +307,7 @@ impl Terms {
     }
 }
 
-fn rounded(matrix: &DMat4) -> RoundedMatrix {
+fn round_matrix(matrix: &DMat4) -> RoundedMatrix {
     rounded_columns(matrix).map(|column| column.map(f64::from))
 }
 

@@ -8,7 +8,7 @@ use super::{
     },
     particles::{MAX_PARTICLE_WORK_OF_CPU_ADAPTER, check_particle_work},
     project::project,
-    sample_tests::SampleTests,
+    sample_rules::SampleTests,
     triangles::{OrientedTriangle, triangles},
 };
 use crate::{

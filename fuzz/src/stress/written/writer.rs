@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use super::{
     super::scenes::Rng,
-    constants::{CONSTANTS, SNIPPETS, UNFOLDED},
+    constants::{CONSTANTS, Constant, SNIPPETS, UNFOLDED},
     helpers::{HELPERS, Helper},
 };
 
@@ -21,16 +21,23 @@ pub enum Kind {
 }
 
 impl Kind {
+    const NAMES: [(Self, &str); 7] = [
+        (Self::Float, "f32"),
+        (Self::Vec2, "vec2f"),
+        (Self::Vec3, "vec3f"),
+        (Self::Vec4, "vec4f"),
+        (Self::Signed, "i32"),
+        (Self::Unsigned, "u32"),
+        (Self::Bool, "bool"),
+    ];
+
     fn name(self) -> &'static str {
-        match self {
-            Self::Float => "f32",
-            Self::Vec2 => "vec2f",
-            Self::Vec3 => "vec3f",
-            Self::Vec4 => "vec4f",
-            Self::Signed => "i32",
-            Self::Unsigned => "u32",
-            Self::Bool => "bool",
-        }
+        Self::NAMES[self as usize].1
+    }
+
+    pub fn of_name(name: &str) -> Self {
+        let kind = Self::NAMES.iter().find(|kind| kind.1 == name);
+        kind.unwrap_or_else(|| panic!("no type {name}")).0
     }
 
     pub fn of_components(count: usize) -> Self {
@@ -177,7 +184,7 @@ struct Written {
 ",
         );
         for helper in &self.helpers {
-            text.push_str(helper.text);
+            text.push_str(&format!("\n{}\n", helper.text));
         }
         self.name("p.amount", Kind::Float, 1.0);
         self.name("p.count", Kind::Unsigned, 8.0);
@@ -432,7 +439,8 @@ struct Written {
     /// is seldom one that a `const` refuses.
     fn constant(&mut self, is_const: bool) -> (Kind, String, f64) {
         let is_unfolded = self.one_in(if is_const { 40 } else { 3 });
-        let constant = self.pick(if is_unfolded { UNFOLDED } else { CONSTANTS });
+        let list: &[Constant] = if is_unfolded { &UNFOLDED } else { &CONSTANTS };
+        let constant = self.pick(list);
         (constant.kind, constant.text.into(), constant.bound)
     }
 

@@ -5,20 +5,15 @@ mod highlight;
 
 use std::path::{Path, PathBuf};
 
-use eframe::egui::{
-    self, Color32, Key, Modifiers, ScrollArea, TextEdit, TextStyle, Ui, pos2, vec2,
-};
+use egui::{self, Color32, Key, Modifiers, ScrollArea, TextEdit, TextStyle, Ui, pos2, vec2};
 
+use crate::app::panels::panel::Panel;
 use crate::{
     app::{
-        files::command::FileCommand,
-        shell::{
-            command::{Command, Commands},
-            state::State,
-        },
+        shell::{command::Commands, state::State},
         widgets::{
             icons::{Icon, icon_button},
-            panel::{Panel, at_right},
+            panel::at_right,
             theme,
         },
     },
@@ -139,10 +134,8 @@ impl Panel for CodePanel {
         let waits_s = open.changed_s + PAUSE_S - state.now_s;
         if open.text != open.tried && waits_s <= 0.0 {
             open.tried.clone_from(&open.text);
-            commands.send(Command::File(FileCommand::TryCode {
-                path: open.path.clone(),
-                text: open.text.clone(),
-            }));
+            let (path, text) = (open.path.clone(), open.text.clone());
+            commands.run(|app| app.state.jobs.try_code(path, text));
         } else if open.text != open.tried {
             ui.ctx().request_repaint_after_secs(waits_s as f32);
         }
@@ -182,10 +175,8 @@ fn head_ui(ui: &mut Ui, open: &mut Open, commands: &Commands) -> bool {
 
 fn save(open: &mut Open, commands: &Commands) {
     open.asks = false;
-    commands.send(Command::File(FileCommand::SaveCode {
-        path: open.path.clone(),
-        text: open.text.clone(),
-    }));
+    let (path, text) = (open.path.clone(), open.text.clone());
+    commands.run(|app| app.state.jobs.save_code(path, text));
 }
 
 /// What becomes of changes that are not saved. Discarded, the file's text is compiled again.

@@ -9,7 +9,7 @@ use std::{
     sync::Arc,
 };
 
-use eframe::egui::Ui;
+use egui::Ui;
 
 use self::{
     buttons::{Choice, buttons},
@@ -17,20 +17,26 @@ use self::{
     questions::{brought_ui, changed_ui, muted_ui, outside_ui, restore_ui, unsaved_ui},
 };
 use super::new_effect::{NewEffect, fields_ui};
+use crate::app::panels::panel::Panel;
 use crate::{
     app::{
+        editing::new_effect::create,
         editing::session::Session,
+        files::apply::quit,
+        files::apply::resolve,
+        files::apply::save,
+        files::apply::use_code,
+        files::apply::use_outside,
+        files::apply::write,
+        files::open::restore,
         files::{
-            command::{CodeUse, FileCommand, Manner, Origin, Purpose},
+            command::{CodeUse, Manner, Origin, Purpose},
             completion::Listing,
             system_dialog::Answer,
         },
         settings::last_session::Restored,
-        shell::{
-            command::{Command, Commands},
-            state::State,
-        },
-        widgets::panel::{Panel, modal},
+        shell::{command::Commands, state::State},
+        widgets::panel::modal,
     },
     effect_files::Catalog,
     effects::Effect,
@@ -224,14 +230,11 @@ impl Dialogs {
     /// Carries out the choice of a button. The dialog stays open if the choice leads to another
     /// question in it.
     fn choose(&mut self, choice: Choice, open: &PresetFile, commands: &Commands) {
-        let file = |command| commands.send(Command::File(command));
         match (choice, self.open.take()) {
             (Choice::Cancel, _) | (_, None) => {}
             (Choice::Browse, Some(Dialog::Path(mut dialog))) => {
-                file(FileCommand::Browse(
-                    dialog.purpose,
-                    PathBuf::from(&dialog.text),
-                ));
+                let (purpose, path) = (dialog.purpose, PathBuf::from(&dialog.text));
+                commands.run(move |app| app.state.jobs.ask_path(purpose, &path));
                 dialog.is_browsing = true;
                 self.open = Some(Dialog::Path(dialog));
             }
@@ -242,53 +245,42 @@ impl Dialogs {
                     self.open = Some(Dialog::Path(dialog));
                 }
             }
-            (Choice::KeepMuted | Choice::DropMuted, Some(Dialog::Muted { path, name })) => {
-                file(FileCommand::Write {
-                    path,
-                    name,
-                    drops_muted: choice == Choice::DropMuted,
-                })
+            (Choice::KeepMuted, Some(Dialog::Muted { path, name })) => {
+                commands.run(move |app| write(app, &path, name));
             }
-            (Choice::Save, Some(Dialog::Unsaved)) => file(FileCommand::Save),
-            (Choice::Keep | Choice::Discard, Some(Dialog::Unsaved)) => file(FileCommand::Quit {
-                keeps_edits: choice == Choice::Keep,
-            }),
+            (Choice::DropMuted, Some(Dialog::Muted { path, name })) => {
+                commands.run(move |app| {
+                    app.state.session.drop_muted();
+                    write(app, &path, name);
+                });
+            }
+            (Choice::Save, Some(Dialog::Unsaved)) => commands.run(save),
+            (Choice::Keep, Some(Dialog::Unsaved)) => commands.run(|app| quit(app, true)),
+            (Choice::Discard, Some(Dialog::Unsaved)) => commands.run(|app| quit(app, false)),
             (Choice::Restore, Some(Dialog::Restore(restored))) => {
-                file(FileCommand::Restore(restored))
+                commands.run(|app| restore(app, *restored));
             }
             (Choice::Discard, Some(Dialog::Restore(_))) => {}
             (Choice::Accept, Some(Dialog::NewEffect(mut dialog))) => {
                 if dialog.check(&open.effects) {
-                    file(FileCommand::NewEffect {
-                        name: dialog.name,
-                        origin: dialog.origin,
-                    });
+                    commands.run(move |app| create(&mut app.state, &dialog.name, dialog.origin));
                 } else {
                     self.open = Some(Dialog::NewEffect(dialog));
                 }
             }
             (Choice::Run | Choice::OpenWithout, Some(Dialog::Code(preset_file, then))) => {
-                file(FileCommand::UseCode {
-                    preset_file,
-                    then,
-                    runs: choice == Choice::Run,
-                });
+                let runs = choice == Choice::Run;
+                commands.run(move |app| use_code(app, *preset_file, then, runs));
             }
             (
                 Choice::OpenModel | Choice::LookOnly,
                 Some(Dialog::Outside(preset_file, manner, said)),
-            ) => file(FileCommand::UseOutside {
-                preset_file,
-                manner,
-                said,
-                opens_model: choice == Choice::OpenModel,
-            }),
+            ) => {
+                let opens_model = choice == Choice::OpenModel;
+                commands.run(move |app| use_outside(app, *preset_file, manner, said, opens_model));
+            }
             (Choice::Side(side), Some(Dialog::Changed(theirs, saving))) => {
-                file(FileCommand::Resolve {
-                    theirs,
-                    side,
-                    saving,
-                })
+                commands.run(move |app| resolve(app, theirs, side, saving));
             }
             (_, dialog) => self.open = dialog,
         }

@@ -7,28 +7,30 @@ use std::sync::{
     atomic::{AtomicBool, Ordering},
 };
 
-use eframe::egui::{self, ScrollArea, Ui};
+use egui::{self, ScrollArea, Ui};
 
-use self::groups::{Group, best, grouped};
+use self::groups::{Group, best, group_effects};
 use super::{
     inspector::effect_menu,
     preset_browser::thumbnails::{Size, Thumbnails},
 };
+use crate::app::panels::panel::Panel;
 use crate::{
     app::{
         editing::{session::Session, stack_drag::StackDrag},
-        files::{command::LibraryCommand, favorites::Starred},
+        files::favorites::Starred,
+        files::library,
         picture::effect_picture::EffectPicture,
         shell::{
             action::Action,
-            command::{Command, Commands, Edit},
+            command::{Commands, Edit},
             log::Level,
             state::State,
         },
         widgets::{
             form::{is_entered, search_ui},
             icons::star_toggle,
-            panel::{Panel, modal},
+            panel::modal,
             theme,
             tile::{Tile, Tiling},
         },
@@ -103,7 +105,7 @@ impl EffectBrowser {
             .cloned()
             .zip(session.preset_file.effects.find(&name).ok().flatten());
         let Some((scene, effect)) = found else {
-            self.pictures.arrived(ctx, &name, None);
+            self.pictures.take_picture(ctx, &name, None);
             return None;
         };
         self.cancelled = Arc::default();
@@ -131,7 +133,7 @@ impl EffectBrowser {
         if image.is_none() && self.cancelled.load(Ordering::Relaxed) {
             return self.pictures.abandoned(effect);
         }
-        self.pictures.arrived(ctx, effect, image);
+        self.pictures.take_picture(ctx, effect, image);
     }
 
     /// Shows the browser in its tab.
@@ -148,7 +150,7 @@ impl EffectBrowser {
         let is_kept = |effect: &Effect| {
             !self.only_favorites || state.files.favorites.has(Starred::Effect, &effect.name)
         };
-        let groups = grouped(&all_effects(state), &self.search, is_kept);
+        let groups = group_effects(&all_effects(state), &self.search, is_kept);
         ScrollArea::vertical()
             .id_salt("effects")
             .auto_shrink(false)
@@ -179,7 +181,7 @@ impl EffectBrowser {
             let field = search_ui(ui, &mut search, SEARCH);
             let is_entered = is_entered(ui, &field);
             ui.add_space(theme::HALF);
-            let groups = grouped(&all, &search, is_absent);
+            let groups = group_effects(&all, &search, is_absent);
             ScrollArea::vertical()
                 .id_salt("effects to add")
                 .auto_shrink([false, true])
@@ -279,8 +281,8 @@ impl EffectBrowser {
             tile.dnd_set_drag_payload(StackDrag::Enable((*effect).clone()));
             tile.context_menu(|ui| effect_menu::menu_ui(ui, state, commands, effect));
             if star.clicked() {
-                let star = LibraryCommand::Star(Starred::Effect, name.clone(), !is_favorite);
-                commands.send(Command::Library(star));
+                let name = name.clone();
+                commands.run(move |app| library::star(app, Starred::Effect, &name, !is_favorite));
             }
             if tile.clicked() {
                 self.has_added = true;
@@ -333,11 +335,11 @@ fn add(commands: &Commands, effect: &Arc<Effect>, rival: Option<&str>) {
             commands.edit(Edit::Replace(rival.into(), effect.clone()));
             let text =
                 format!("{name} replaced {rival}: both take the same slot of the rasterizer");
-            commands.send(Command::Notify(Level::Info, text));
+            commands.notify(Level::Info, text);
         }
         None => commands.edit(Edit::Enable(effect.clone())),
     }
-    commands.send(Command::Reveal(name.into()));
+    commands.reveal(name.into());
 }
 
 /// The open preset with nothing but `effect`: with the values of the built-in preset that shows it,

@@ -2,7 +2,7 @@
 //! judged to err by on the open picture, and below it, folded, the axes that the picture can use,
 //! each with the option that the planner took and why.
 
-use eframe::egui::{self, Align2, Color32, RichText, Sense, Ui, pos2, vec2};
+use egui::{self, Align2, Color32, RichText, Sense, Ui, pos2, vec2};
 
 use super::rows::{folder, setting_ui};
 use crate::{
@@ -15,7 +15,7 @@ use crate::{
             tier_times::{self, TierNumbers, TierTime},
         },
         shell::{
-            command::{Command, Commands, Edit},
+            command::{Commands, Edit},
             state::State,
         },
         widgets::{panel::describe_chosen, text::short, theme},
@@ -151,7 +151,7 @@ fn tiers_ui(ui: &mut Ui, state: &State, commands: &Commands, chosen: Tier) {
     let hint = "Milliseconds of a frame, measured on this picture while the window is at rest. Wrong pixels per million and the largest \
                 difference of a color, as Verify has judged this picture, or (≤) what the options of the tier may err by.";
     if ui.is_rect_visible(shown.response.on_hover_text(hint).rect) {
-        commands.send(Command::MeasureTiers);
+        commands.run(|app| app.state.picture.tier_times.is_looked_at = true);
     }
 }
 

@@ -1,13 +1,13 @@
 //! The bookmarks of the preset: cameras under names.
 
-use eframe::egui::{self, Ui};
+use egui::{self, Ui};
 
 use crate::{
     app::{
-        files::command::{LibraryCommand, Naming},
+        files::command::Naming,
         shell::{
             action::Action,
-            command::{Command, Commands, Edit},
+            command::{Commands, Edit},
             state::State,
         },
         widgets::{
@@ -43,7 +43,8 @@ fn bookmark_ui(ui: &mut Ui, bookmark: &Bookmark, is_here: bool, commands: &Comma
     let rename = ui.small_button("Rename");
     if rename.accessible_name(format!("Rename {name}")).clicked() {
         let naming = Naming::Bookmark(name.clone());
-        commands.send(Command::Library(LibraryCommand::AskName(naming)));
+        let naming = naming;
+        commands.run(|app| app.panels.naming.ask(naming));
     }
     let go = ui.add(egui::Button::selectable(is_here, name.as_str()).truncate());
     if go

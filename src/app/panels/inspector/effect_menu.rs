@@ -2,11 +2,13 @@
 
 use std::sync::Arc;
 
-use eframe::egui::{self, Ui};
+use egui::{self, Ui};
 
 use crate::{
     app::{
-        files::command::{FileCommand, LibraryCommand, Naming},
+        files::command::Naming,
+        files::library,
+        shell::apply::ask_new_effect,
         shell::{
             action::Action,
             command::{Command, Commands, Edit, RowCommand},
@@ -34,9 +36,8 @@ pub fn menu_ui(ui: &mut Ui, state: &State, commands: &Commands, effect: &Arc<Eff
         Err(reason) => button.on_disabled_hover_text(format!("{} {reason}.", effect.name)),
     };
     if button.clicked() {
-        chosen = Some(Command::File(FileCommand::AskNewEffect(Some(
-            effect.clone(),
-        ))));
+        let effect = Some(effect.clone());
+        chosen = Some(Box::new(|app| ask_new_effect(app, effect)));
     }
     let file = effect.source.as_ref().and_then(|source| {
         let mut custom = state.session.preset_file.effects.custom();
@@ -48,21 +49,24 @@ pub fn menu_ui(ui: &mut Ui, state: &State, commands: &Commands, effect: &Arc<Eff
         let shown = path.display().to_string();
         let edit = ui.add(entry("Edit the text"));
         if edit.on_hover_text(&shown).clicked() {
-            chosen = Some(Command::File(FileCommand::ShowCode(path.clone())));
+            let path = path.clone();
+            chosen = Some(Box::new(|app| app.state.jobs.read_code(path)));
         }
         let open = ui.add(entry("Open in my editor"));
         if open.on_hover_text(&shown).clicked() {
-            chosen = Some(Command::File(FileCommand::Edit(path)));
+            chosen = Some(Box::new(|app| app.state.jobs.open_editor(path)));
         }
     }
     if state.session.preset().stack.get(&effect.name).is_some()
         && ui.add(entry("Reset all parameters")).clicked()
     {
-        chosen = Some(Command::Row(RowCommand::ResetGroup(effect.name.clone())));
+        commands.row(RowCommand::ResetGroup(effect.name.clone()));
+        ui.close();
     }
     if state.session.preset().stack.get(&effect.name).is_some() && ui.add(entry("Remove")).clicked()
     {
-        chosen = Some(Command::Edit(Edit::Disable(effect.clone())));
+        commands.edit(Edit::Disable(effect.clone()));
+        ui.close();
     }
     if let Some(command) = chosen {
         commands.send(command);
@@ -72,7 +76,7 @@ pub fn menu_ui(ui: &mut Ui, state: &State, commands: &Commands, effect: &Arc<Eff
 
 /// What can be done with the effect's values as a whole: copied, pasted, saved and recalled.
 fn values_ui(ui: &mut Ui, state: &State, effect: &Arc<Effect>) -> Option<Command> {
-    let mut chosen = None;
+    let mut chosen: Option<Command> = None;
     let is_enabled = state.session.preset().stack.get(&effect.name).is_some();
     let copy = ui.add_enabled(is_enabled, entry("Copy effect"));
     if copy
@@ -81,14 +85,15 @@ fn values_ui(ui: &mut Ui, state: &State, effect: &Arc<Effect>) -> Option<Command
         )
         .clicked()
     {
-        chosen = Some(Command::Library(LibraryCommand::CopyEffect(effect.clone())));
+        let effect = effect.clone();
+        chosen = Some(Box::new(move |app| library::copy_effect(app, &effect)));
     }
     if ui
         .add(entry("Paste effect"))
         .on_hover_text("Enable the effect that is on the clipboard, with its values")
         .clicked()
     {
-        chosen = Some(Command::Perform(Action::PastePreset));
+        chosen = Some(Box::new(|app| Action::PastePreset.perform(app)));
     }
     let mut saved = state
         .files
@@ -105,9 +110,8 @@ fn values_ui(ui: &mut Ui, state: &State, effect: &Arc<Effect>) -> Option<Command
                         .accessible_name(format!("Use {} for {}", saved.name, effect.name))
                         .clicked()
                     {
-                        chosen = Some(Command::Library(LibraryCommand::UseValues(
-                            saved.path.clone(),
-                        )));
+                        let path = saved.path.clone();
+                        chosen = Some(Box::new(move |app| library::use_values(app, &path)));
                     }
                     if icon_button(
                         ui,
@@ -116,9 +120,8 @@ fn values_ui(ui: &mut Ui, state: &State, effect: &Arc<Effect>) -> Option<Command
                     )
                     .clicked()
                     {
-                        chosen = Some(Command::Library(LibraryCommand::DeleteValues(
-                            saved.path.clone(),
-                        )));
+                        let path = saved.path.clone();
+                        chosen = Some(Box::new(move |app| library::delete_values(app, &path)));
                     }
                 });
             }
@@ -127,9 +130,8 @@ fn values_ui(ui: &mut Ui, state: &State, effect: &Arc<Effect>) -> Option<Command
                 .on_hover_text("Keep the effect's values under a name, for every preset")
                 .clicked()
             {
-                chosen = Some(Command::Library(LibraryCommand::AskName(Naming::Values(
-                    effect.clone(),
-                ))));
+                let naming = Naming::Values(effect.clone());
+                chosen = Some(Box::new(|app| app.panels.naming.ask(naming)));
             }
         });
         menu.response.accessible_name("Saved values");

@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use eframe::egui::{self, Rect, RichText, Sense, Ui, vec2};
+use egui::{self, Rect, RichText, Sense, Ui, vec2};
 
 use super::{
     effect_menu,
@@ -15,10 +15,10 @@ use crate::{
     app::{
         editing::stack_drag::{StackDrag, drop_ui},
         panels::effect_browser::groups::depends_on_order,
-        picture::command::{Picking, ViewCommand},
+        picture::command::Picking,
         shell::{
             action::Action,
-            command::{Command, Commands, Edit, Parameter},
+            command::{Commands, Edit, Parameter},
             state::State,
         },
         widgets::{
@@ -181,7 +181,8 @@ fn header_ui(
                 (Icon::Eye, "Mute")
             };
             if icon_button(ui, icon, &format!("{verb} {}", effect.name)).clicked() {
-                commands.send(Command::Mute(effect.clone(), !is_muted));
+                let name = effect.name.clone();
+                commands.run(move |app| app.state.session.mute(name, !is_muted));
             }
             for (icon, verb, to) in [
                 (Icon::Down, "later", index + 1),
@@ -271,9 +272,8 @@ fn pick_ui(ui: &mut Ui, picking: Option<&Picking>, commands: &Commands, paramete
         );
         let button = button.on_hover_text("The next click in the picture sets this point");
         if button.accessible_name(format!("Pick {path}")).clicked() {
-            commands.send(Command::View(ViewCommand::Pick(
-                (!is_picking).then_some(pick),
-            )));
+            let picking = (!is_picking).then_some(pick);
+            commands.run(|app| app.state.picture.picking = picking);
         }
     });
 }

@@ -1,15 +1,11 @@
 //! The folder of the overlays: which are shown, and how many pixels each paints.
 
-use eframe::egui::{RichText, Ui};
+use egui::{RichText, Ui};
 
 use crate::app::{
-    picture::{command::ViewCommand, overlay::Overlay},
-    shell::{
-        action::Action,
-        command::{Command, Commands},
-        state::State,
-    },
-    widgets::{form::gain_ui, icons::swatch, panel::at_right, text::grouped, theme},
+    picture::overlay::Overlay,
+    shell::{action::Action, command::Commands, state::State},
+    widgets::{form::gain_ui, icons::swatch, panel::at_right, text::group_digits, theme},
 };
 
 pub fn overlays_ui(ui: &mut Ui, state: &State, commands: &Commands) {
@@ -29,21 +25,21 @@ pub fn overlays_ui(ui: &mut Ui, state: &State, commands: &Commands) {
                 .accessible_name(label)
                 .clicked()
             {
-                commands.send(Command::View(ViewCommand::ShowOverlay(overlay, on)));
+                commands.run(move |app| app.state.picture.overlays.set(overlay, on));
             }
             swatch(ui, overlay.color());
             if overlay == Overlay::Color {
                 let mut gain = state.picture.overlays.gain;
                 let hint = "Factor of the color difference";
                 if gain_ui(ui, "Overlay gain", &mut gain, hint).changed() {
-                    commands.send(Command::View(ViewCommand::OverlayGain(gain)));
+                    commands.run(move |app| app.state.picture.overlays.gain = gain);
                 }
             }
             if let Some(findings) = findings {
                 let count = findings.count(overlay);
                 let is_bad = overlay.is_error() && overlay.fault().is_some() && count > 0;
                 at_right(ui, |ui| {
-                    let text = RichText::new(grouped(count)).monospace();
+                    let text = RichText::new(group_digits(count)).monospace();
                     ui.label(text.color(if is_bad {
                         theme::red()
                     } else {

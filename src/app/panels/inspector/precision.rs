@@ -2,18 +2,13 @@
 
 use std::sync::Arc;
 
-use eframe::egui::{self, Ui};
+use egui::{self, Ui};
 
 use crate::{
     app::{
-        picture::{
-            command::{Marker, ViewCommand},
-            precision::Error,
-        },
-        shell::{
-            command::{Command, Commands},
-            state::State,
-        },
+        picture::apply::mark,
+        picture::{command::Marker, precision::Error},
+        shell::{command::Commands, state::State},
         widgets::theme,
     },
     effect_files::Quantity,
@@ -82,7 +77,7 @@ fn errors_ui(ui: &mut Ui, state: &State, commands: &Commands, effect: &Arc<Effec
                 uv: [x as f32, y as f32],
                 text: format!("{}: {}", effect.name, words(error)),
             };
-            commands.send(Command::View(ViewCommand::Mark(Some(Box::new(marker)))));
+            commands.run(|app| mark(&mut app.state, Some(marker)));
         }
     }
 }

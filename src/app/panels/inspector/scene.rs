@@ -1,6 +1,6 @@
 //! The folder of the scene: its settings, its cameras and its images.
 
-use eframe::egui::Ui;
+use egui::Ui;
 
 use super::{
     parts::parts_ui,
@@ -9,7 +9,7 @@ use super::{
 use crate::{
     app::{
         shell::{
-            command::{Command, Commands, Edit, RowCommand},
+            command::{Commands, Edit, RowCommand},
             state::State,
         },
         widgets::{form::menu_ui, panel::row, text, theme},
@@ -149,7 +149,7 @@ fn gradient_ui(ui: &mut Ui, preset: &Preset, commands: &Commands) {
                 first_bottom(preset.output.background).to_value(),
             ));
         } else if tick.changed() {
-            commands.send(Command::Row(RowCommand::Reset(BOTTOM.into())));
+            commands.row(RowCommand::Reset(BOTTOM.into()));
         }
     });
 }
@@ -167,7 +167,7 @@ fn ground_ui(ui: &mut Ui, state: &State, commands: &Commands) {
             let first = &GROUND.settings[0];
             commands.edit(Edit::Setting(first, Value::Choice(0)));
         } else if tick.changed() {
-            commands.send(Command::Row(RowCommand::ResetGroup(GROUND.name.into())));
+            commands.row(RowCommand::ResetGroup(GROUND.name.into()));
         }
         ui.add_space(theme::GAP);
         parts_ui(ui, state, commands);

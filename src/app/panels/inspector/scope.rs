@@ -3,13 +3,13 @@
 
 use std::sync::Arc;
 
-use eframe::egui::{self, Popup, PopupCloseBehavior, ScrollArea, TextEdit, Ui};
+use egui::{self, Popup, PopupCloseBehavior, ScrollArea, TextEdit, Ui};
 
 use crate::{
     app::{
-        picture::command::{Picking, ViewCommand},
+        picture::command::Picking,
         shell::{
-            command::{Command, Commands, Edit},
+            command::{Commands, Edit},
             state::State,
         },
         widgets::theme,
@@ -165,10 +165,8 @@ fn picker_ui(ui: &mut Ui, state: &State, commands: &Commands, effect: &Arc<Effec
                 .accessible_name(format!("Pick a {} for {}", kind.name(), effect.name))
                 .clicked()
             {
-                commands.send(Command::View(ViewCommand::Pick(Some(Picking::Part(
-                    effect.clone(),
-                    kind,
-                )))));
+                let picking = Some(Picking::Part(effect.clone(), kind));
+                commands.run(|app| app.state.picture.picking = picking);
                 ui.close();
             }
         }

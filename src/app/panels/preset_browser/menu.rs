@@ -1,10 +1,12 @@
 //! The menu of a preset in the gallery: open it with its scene, rename, duplicate, delete.
 
-use eframe::egui::{self, Ui};
+use egui::{self, Ui};
 
 use crate::{
     app::{
-        files::command::{FileCommand, LibraryCommand, Manner, Naming},
+        files::apply::open_preset,
+        files::command::{Manner, Naming},
+        files::library,
         shell::{
             command::{Command, Commands},
             log::Level,
@@ -17,13 +19,13 @@ use crate::{
 /// Shows the entries.
 pub fn menu_ui(ui: &mut Ui, entry: &GalleryEntry, commands: &Commands) {
     let title = entry.title();
-    let mut chosen = None;
+    let mut chosen: Option<Command> = None;
     let with_scene = ui.add_enabled(entry.preset_file.is_ok(), button("Open with its scene"));
     if with_scene
         .on_hover_text("Its own scene in place of the open one")
         .clicked()
     {
-        commands.send(opening(entry, Manner::WithScene));
+        open_entry(entry, Manner::WithScene, commands);
         ui.close();
     }
     ui.separator();
@@ -37,10 +39,11 @@ pub fn menu_ui(ui: &mut Ui, entry: &GalleryEntry, commands: &Commands) {
     if file_entry(ui, "Rename…")
         && let Some(path) = &entry.path
     {
-        chosen = Some(LibraryCommand::AskName(Naming::Preset {
+        let naming = Naming::Preset {
             path: path.clone(),
             title: title.into(),
-        }));
+        };
+        chosen = Some(Box::new(|app| app.panels.naming.ask(naming)));
     }
     let duplicate = ui.add_enabled(entry.preset_file.is_ok(), button("Duplicate"));
     let duplicate =
@@ -48,24 +51,33 @@ pub fn menu_ui(ui: &mut Ui, entry: &GalleryEntry, commands: &Commands) {
     if duplicate.clicked()
         && let Ok(found) = &entry.preset_file
     {
-        chosen = Some(LibraryCommand::Duplicate(found.clone().into()));
+        let found = found.clone();
+        chosen = Some(Box::new(move |app| {
+            library::notify_outcome(app, |app| library::duplicate(app, &found));
+        }));
     }
     if file_entry(ui, "Delete")
         && let Some(path) = &entry.path
     {
-        chosen = Some(LibraryCommand::Delete(path.clone()));
+        let path = path.clone();
+        chosen = Some(Box::new(move |app| {
+            library::notify_outcome(app, |app| library::delete(app, &path));
+        }));
     }
     if let Some(chosen) = chosen {
-        commands.send(Command::Library(chosen));
+        commands.send(chosen);
         ui.close();
     }
 }
 
 /// Opens a preset of the gallery, or says why it cannot be opened.
-pub fn opening(entry: &GalleryEntry, manner: Manner) -> Command {
+pub fn open_entry(entry: &GalleryEntry, manner: Manner, commands: &Commands) {
     match &entry.preset_file {
-        Ok(found) => Command::File(FileCommand::OpenPreset(Box::new(found.clone()), manner)),
-        Err(error) => Command::Notify(Level::Error, error.to_string()),
+        Ok(found) => {
+            let found = found.clone();
+            commands.run(move |app| open_preset(app, found, manner));
+        }
+        Err(error) => commands.notify(Level::Error, error.to_string()),
     }
 }
 

@@ -9,33 +9,31 @@ pub mod toolbar;
 
 use std::time::SystemTime;
 
-use eframe::egui::{self, Align, RichText, Ui, vec2};
+use egui::{self, Align, RichText, Ui, vec2};
 
 use self::{
     arrange::{Filter, Item, arrange, tags},
-    menu::{menu_ui, opening},
+    menu::{menu_ui, open_entry},
     pictures::Pictures,
     thumbnails::Size,
 };
 use super::effect_browser::EffectBrowser;
+use crate::app::panels::panel::Panel;
 use crate::{
     app::{
         editing::session::FileId,
+        files::library,
         files::{
-            command::{LibraryCommand, Manner},
+            command::Manner,
             favorites::{Favorites, Starred},
             scene_loader::SceneKey,
         },
         picture::effect_picture::THUMBNAIL,
         settings::browsing::{Browsing, Layout, Tab},
-        shell::{
-            action::Action,
-            command::{Command, Commands},
-            state::State,
-        },
+        shell::{action::Action, command::Commands, state::State},
         widgets::{
             icons::{Icon, icon_button},
-            panel::{Panel, at_right},
+            panel::at_right,
             theme,
             tile::{Tile, Tiling},
         },
@@ -209,12 +207,12 @@ impl PresetBrowser {
                 ui.set_min_height(theme::ROW);
                 at_right(ui, |ui| {
                     if icon_button(ui, Icon::Cross, "Keep it in the trash").clicked() {
-                        commands.send(Command::Library(LibraryCommand::ForgetDeleted));
+                        commands.run(|app| app.state.files.deleted.clear());
                     }
                     let hint = format!("Put {} back", deleted.path.display());
                     let undo = ui.button("Undo").on_hover_text(hint);
                     if undo.accessible_name("Undo the deletion").clicked() {
-                        commands.send(Command::Library(LibraryCommand::Restore));
+                        commands.run(|app| library::notify_outcome(app, library::restore));
                     }
                     ui.with_layout(egui::Layout::left_to_right(Align::Center), |ui| {
                         let text = format!("{} was deleted", deleted.name());
@@ -270,9 +268,8 @@ impl PresetBrowser {
             let [tile, star] = tile.show(ui, tiling, rect, egui::Sense::click());
             tile.context_menu(|ui| menu_ui(ui, entry, commands));
             if star.clicked() {
-                let id = entry.id.clone();
-                let star = LibraryCommand::Star(Starred::Preset, id, !item.is_favorite);
-                commands.send(Command::Library(star));
+                let (name, is_on) = (entry.id.clone(), !item.is_favorite);
+                commands.run(move |app| library::star(app, Starred::Preset, &name, is_on));
             }
             if tile.clicked() {
                 let with_scene = ui.input(|i| i.modifiers.shift || i.modifiers.alt);
@@ -280,7 +277,7 @@ impl PresetBrowser {
                     true => Manner::WithScene,
                     false => Manner::Look,
                 };
-                commands.send(opening(entry, manner));
+                open_entry(entry, manner, commands);
             }
             tile.on_hover_ui(|ui| about_ui(ui, entry, item, &about));
         });

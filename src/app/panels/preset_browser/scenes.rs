@@ -2,19 +2,18 @@
 
 use std::collections::HashMap;
 
-use eframe::egui::{self, Align2, DragValue, Label, Sense, Ui, vec2};
+use egui::{self, Align2, DragValue, Label, Sense, Ui, vec2};
 
 use crate::{
     app::{
         editing::session::Session,
-        files::command::FileCommand,
         shell::{
             action::Action,
-            command::{Command, Commands, Edit},
+            command::{Commands, Edit},
             state::State,
         },
         widgets::{
-            text::{cut_middle, grouped},
+            text::{cut_middle, group_digits},
             theme,
         },
     },
@@ -49,10 +48,7 @@ pub fn scenes_ui(ui: &mut Ui, state: &State, commands: &Commands) {
         let button = egui::Button::selectable(is_open, builtin.name)
             .min_size(vec2(ui.available_width(), theme::ROW));
         if ui.add(button).on_hover_text(builtin.about).clicked() && !is_open {
-            commands.send(Command::File(FileCommand::Open(format!(
-                "builtin:{}",
-                builtin.name
-            ))));
+            commands.open(format!("builtin:{}", builtin.name));
         }
         if is_open && let Some(changed) = params_ui(ui, builtin, query) {
             commands.edit(Edit::BuiltinQuery(changed));
@@ -84,13 +80,13 @@ fn shown_ui(ui: &mut Ui, session: &Session) {
     let Some(scene) = session.scene() else { return };
     ui.label(theme::weak(format!(
         "{} triangles · {} vertices",
-        grouped(scene.triangle_count()),
-        grouped(scene.vertex_count())
+        group_digits(scene.triangle_count()),
+        group_digits(scene.vertex_count())
     )));
     if scene.instances.len() > 1 {
         ui.label(theme::weak(format!(
             "{} instances",
-            grouped(scene.instances.len() as u64)
+            group_digits(scene.instances.len() as u64)
         )));
     }
     if scene.triangle_count() == 0 {

@@ -1,14 +1,15 @@
 //! What the timeline says while nothing is animated: how to animate a value, or which clips the
 //! scene has.
 
-use eframe::egui::{self, Label, Ui, vec2};
+use egui::{self, Label, Ui, vec2};
 
 use super::tracks::TRACK;
 use crate::{
     app::{
-        editing::{command::TimeCommand, session::Session},
+        editing::session::Session,
         files::scene_loader::clip_id,
-        shell::command::{Command, Commands, Edit},
+        shell::action::Action,
+        shell::command::{Commands, Edit},
         widgets::{icons::paint_diamond, theme},
     },
     preset::Clock,
@@ -72,7 +73,7 @@ fn clips_ui(ui: &mut Ui, scene: &Scene, session: &Session, commands: &Commands) 
                     commands.edit(Edit::Clock(Clock { range_s: [0.0, clip.duration_s], ..preset.clock }));
                 }
                 if !session.playback.playing {
-                    commands.send(Command::Time(TimeCommand::PlayOrPause));
+                    commands.perform(Action::Play);
                 }
             }
         }

@@ -8,24 +8,22 @@ mod tracks;
 
 use std::collections::BTreeSet;
 
-use eframe::egui::{self, Align, DragValue, Layout, Rect, Ui, pos2, vec2};
+use egui::{self, Align, DragValue, Layout, Rect, Ui, pos2, vec2};
 
 use self::span::Span;
+use crate::app::panels::panel::Panel;
 use crate::{
     app::{
-        editing::{
-            command::{KeyframeEdit, TimeCommand},
-            key_id::KeyId,
-            session::Session,
-        },
+        editing::apply::keyframe,
+        editing::{command::KeyframeEdit, key_id::KeyId, session::Session},
         shell::{
             action::Action,
-            command::{Command, Commands, Edit},
+            command::{Commands, Edit},
             state::State,
         },
         widgets::{
             icons::{Icon, icon_button, toggle_button},
-            panel::{Panel, at_right},
+            panel::at_right,
             theme,
         },
     },
@@ -58,7 +56,7 @@ pub struct Timeline {
 }
 
 /// Tracks of the enabled effects.
-fn animated(session: &Session) -> Vec<&Track> {
+fn animated_tracks(session: &Session) -> Vec<&Track> {
     let preset = session.preset();
     preset
         .animation
@@ -71,7 +69,7 @@ fn animated(session: &Session) -> Vec<&Track> {
 impl Timeline {
     /// Height of the whole panel, points.
     pub fn height(&self, session: &Session) -> f32 {
-        let heights = animated(session)
+        let heights = animated_tracks(session)
             .into_iter()
             .map(|track| tracks::height(self.open.contains(&track.path())))
             .sum::<f32>();
@@ -105,7 +103,8 @@ impl Timeline {
             .accessible_name("Key time")
             .on_hover_text("Time of this key");
         if response.changed() {
-            commands.send(Command::Keyframe(KeyframeEdit::Move(key.clone(), time_s)));
+            let edit = KeyframeEdit::Move(key.clone(), time_s);
+            commands.run(|app| keyframe(app, edit));
         }
         let mut chosen = easing;
         ui.add_enabled_ui(!is_stepped, |ui| {
@@ -126,7 +125,8 @@ impl Timeline {
                 )
         });
         if chosen != easing {
-            commands.send(Command::Keyframe(KeyframeEdit::Ease(key.clone(), chosen)));
+            let edit = KeyframeEdit::Ease(key.clone(), chosen);
+            commands.step(|app| keyframe(app, edit));
         }
         if icon_button(ui, Icon::Cross, "Remove the key (Delete)").clicked() {
             commands.perform(Action::RemoveKey);
@@ -156,7 +156,7 @@ impl Panel for Timeline {
                 });
             });
         });
-        let tracks = animated(session);
+        let tracks = animated_tracks(session);
         if self.span_s.is_none() || !ui.input(|i| i.pointer.any_down()) {
             self.span_s = Some(span::extent(session.preset().clock.range_s, &tracks));
         }
@@ -253,7 +253,8 @@ fn time_ui(ui: &mut Ui, session: &Session, commands: &Commands) {
         .accessible_name("Time")
         .on_hover_text("The time that is shown");
     if response.changed() {
-        commands.send(Command::Time(TimeCommand::Show(now_s)));
+        let time_s = now_s;
+        commands.run(move |app| app.state.session.playback.show(time_s));
     }
     if session.is_off_its_time() {
         ui.spacing_mut().item_spacing.x = 2.0;
@@ -263,14 +264,14 @@ fn time_ui(ui: &mut Ui, session: &Session, commands: &Commands) {
             .on_hover_text("Make this the preset's own time, which saved pictures show")
             .clicked()
         {
-            commands.send(Command::Time(TimeCommand::Keep));
+            commands.run(|app| app.state.session.keep_shown_time());
         }
         if ui
             .small_button("Back")
             .on_hover_text(format!("Show the preset's own time, {own_s:.3} s"))
             .clicked()
         {
-            commands.send(Command::Time(TimeCommand::ShowOwn));
+            commands.run(|app| app.state.session.show_own_time());
         }
     }
 }

@@ -1,14 +1,10 @@
 //! The ruler: seconds from left to right, the range that plays, and the playhead that is dragged to
 //! scrub.
 
-use eframe::egui::{self, Align2, FontId, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
+use egui::{self, Align2, FontId, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
 
 use super::span::Span;
-use crate::app::{
-    editing::{command::TimeCommand, session::Session},
-    shell::command::{Command, Commands},
-    widgets::theme,
-};
+use crate::app::{editing::session::Session, shell::command::Commands, widgets::theme};
 
 /// Least distance between labeled ticks, points.
 const TICK_POINTS: f32 = 64.0;
@@ -33,12 +29,11 @@ pub fn ruler_ui(ui: &mut Ui, rail: Rect, span: &Span, session: &Session, command
         .filter(|_| is_held || response.clicked())
     {
         let time_s = span.time_s(at.x.clamp(span.rect().left(), span.rect().right()));
-        commands.send(Command::Time(TimeCommand::Show(
-            (time_s * 1000.0).round() / 1000.0,
-        )));
+        let time_s = (time_s * 1000.0).round() / 1000.0;
+        commands.run(move |app| app.state.session.playback.show(time_s));
     }
     if is_held != session.playback.is_held {
-        commands.send(Command::Time(TimeCommand::Hold(is_held)));
+        commands.run(move |app| app.state.session.playback.is_held = is_held);
     }
     let response = response.on_hover_cursor(egui::CursorIcon::ResizeHorizontal);
     let painter = ui.painter_at(rail);

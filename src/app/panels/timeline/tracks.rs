@@ -3,7 +3,7 @@
 
 use std::collections::BTreeSet;
 
-use eframe::egui::{
+use egui::{
     self, Align, Align2, Color32, FontId, Layout, Pos2, Rect, Sense, Shape, Stroke, Ui, UiBuilder,
     pos2, vec2,
 };
@@ -11,13 +11,9 @@ use eframe::egui::{
 use super::span::Span;
 use crate::{
     app::{
-        editing::{
-            command::{KeyframeEdit, TimeCommand},
-            key_id::KeyId,
-            playback::STEP_S,
-            session::Session,
-        },
-        shell::command::{Command, Commands},
+        editing::apply::keyframe,
+        editing::{command::KeyframeEdit, key_id::KeyId, playback::STEP_S, session::Session},
+        shell::command::Commands,
         widgets::{
             icons::{Icon, icon_button},
             panel::describe,
@@ -173,9 +169,10 @@ impl Tracks<'_> {
         );
         if response.clicked() {
             *self.selected = Some(id.clone());
-            self.commands.send(Command::Time(TimeCommand::Pause));
+            self.commands.run(|app| app.state.session.playback.pause());
+            let time_s = key.time_s;
             self.commands
-                .send(Command::Time(TimeCommand::Show(key.time_s)));
+                .run(move |app| app.state.session.playback.show(time_s));
         }
         if response.drag_started_by(egui::PointerButton::Primary) {
             (*self.selected, *self.grabbed_s) = (Some(id.clone()), Some(key.time_s));
@@ -186,7 +183,7 @@ impl Tracks<'_> {
         let mut edit = None;
         response.context_menu(|ui| edit = menu_ui(ui, track, key, &id));
         if let Some(edit) = edit {
-            self.commands.send(Command::Keyframe(edit));
+            self.commands.step(move |app| keyframe(app, edit));
         }
         response.on_hover_ui(|ui| {
             ui.label(format!(
@@ -235,10 +232,8 @@ impl Tracks<'_> {
         let low = limit(index.checked_sub(1).map(|i| &keys[i]), 1e-3, first_s);
         let high = limit(keys.get(index + 1), -1e-3, last_s);
         if low <= high {
-            self.commands.send(Command::Keyframe(KeyframeEdit::Move(
-                selected.clone(),
-                snapped_s.clamp(low, high),
-            )));
+            let edit = KeyframeEdit::Move(selected.clone(), snapped_s.clamp(low, high));
+            self.commands.run(|app| keyframe(app, edit));
         }
     }
 }

@@ -6,19 +6,16 @@ mod table;
 
 use std::sync::Arc;
 
-use eframe::egui::{self, RichText, Ui};
+use egui::{self, RichText, Ui};
 
+use crate::app::panels::panel::Panel;
 use crate::{
     accuracy::{AXES, Axis},
     app::{
-        editing::command::TimeCommand,
+        editing::apply::pin_options,
         picture::screen::Inputs,
-        shell::{
-            action::Action,
-            command::{Command, Commands},
-            log::Level,
-            state::State,
-        },
+        shell::apply::measure_trade,
+        shell::{action::Action, command::Commands, log::Level, state::State},
         trade::{
             pace::{Pace, Rates, about},
             point::{Metric, Point, csv},
@@ -26,7 +23,7 @@ use crate::{
         },
         widgets::{
             icons::{Icon, icon_button},
-            panel::{Panel, at_right, main_button},
+            panel::{at_right, main_button},
             text::first_line,
             theme,
         },
@@ -161,7 +158,7 @@ impl TradePanel {
 
     /// Takes the points of the measurement that has ended. One that was canceled keeps those that
     /// were timed. Returns the whole message of an error.
-    pub fn arrived(&mut self, points: Result<Vec<Point>, String>) -> Option<String> {
+    pub fn take_points(&mut self, points: Result<Vec<Point>, String>) -> Option<String> {
         let Running {
             request,
             progress,
@@ -205,10 +202,7 @@ impl TradePanel {
                         .clicked()
                     {
                         ui.copy_text(csv(points, &request.axes));
-                        commands.send(Command::Notify(
-                            Level::Info,
-                            "Copied the table as CSV".into(),
-                        ));
+                        commands.notify(Level::Info, "Copied the table as CSV");
                     }
                     ui.add_space(theme::GAP);
                     plot::legend_ui(ui);
@@ -314,8 +308,8 @@ impl TradePanel {
             workload,
         });
         // A picture that plays keeps the device busy, so the measurement would wait for it.
-        commands.send(Command::Time(TimeCommand::Pause));
-        commands.send(Command::MeasureTrade(Box::new(request), progress));
+        commands.run(|app| app.state.session.playback.pause());
+        commands.run(|app| measure_trade(app, request, progress));
     }
 
     /// Plot and table. Returns the index of the combination that was clicked.
@@ -415,10 +409,8 @@ impl Panel for TradePanel {
             ui.separator();
             let clicked = self.points_ui(ui, state);
             if let (Some(index), Some(Measured { request, points })) = (clicked, &self.measured) {
-                commands.send(Command::PinOptions(
-                    points[index].pins,
-                    request.axes.clone(),
-                ));
+                let (pins, axes) = (points[index].pins, request.axes.clone());
+                commands.step(move |app| pin_options(&mut app.state, &pins, &axes));
             }
         });
     }

@@ -1,17 +1,14 @@
 //! Over the picture: its state on the left, buttons of views on the right, and a hint while a file
 //! hovers.
 
-use eframe::egui::{self, Align2, Color32, FontId, Rect, RichText, Ui, pos2};
+use egui::{self, Align2, Color32, FontId, Rect, RichText, Ui, pos2};
 
 use crate::{
     app::{
         editing::session::FileId,
+        files::open::cancel_loading,
         picture::{command::Picking, golden_check::Outcome},
-        shell::{
-            action::Action,
-            command::{Command, Commands},
-            state::State,
-        },
+        shell::{action::Action, command::Commands, state::State},
         widgets::{
             icons::{Icon, icon_button},
             theme,
@@ -116,7 +113,7 @@ fn loading_ui(ui: &mut Ui, state: &State, commands: &Commands) {
                 .accessible_name("Stop loading")
                 .clicked()
             {
-                commands.send(Command::CancelLoading);
+                commands.run(cancel_loading);
             }
         });
     });

@@ -1,19 +1,17 @@
 //! The plates of a comparison: below each side what it shows, its time and its error.
 
-use eframe::egui::{self, Color32, Rect, RichText, Ui, pos2, vec2};
+use egui::{self, Color32, Rect, RichText, Ui, pos2, vec2};
 
 use super::compare::{Compare, Mode};
 use crate::{
     app::{
+        editing::apply::keyframe,
         editing::command::KeyframeEdit,
         picture::{
             measured::{error_line, time_line},
             screen::Screen,
         },
-        shell::{
-            command::{Command, Commands},
-            state::State,
-        },
+        shell::{command::Commands, state::State},
         widgets::{
             icons::{Icon, icon_button},
             theme,
@@ -106,7 +104,7 @@ fn plate_a_ui(ui: &mut Ui, compare: &mut Compare, (state, commands): (&State, &C
                     .clicked()
             {
                 let edit = KeyframeEdit::From(kept.clone());
-                commands.send(Command::Keyframe(edit));
+                commands.step(move |app| keyframe(app, edit));
             }
             if is_kept
                 && ui

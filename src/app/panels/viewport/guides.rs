@@ -1,21 +1,17 @@
 //! Guides over the picture: the box of the scene, its axes, a grid under it, and the distance
 //! between two points that were clicked. They are painted over the picture, whatever hides them.
 
-use eframe::egui::{self, Align2, Color32, FontId, Painter, Pos2, Rect, Response, Sense, Ui, vec2};
+use egui::{self, Align2, Color32, FontId, Painter, Pos2, Rect, Response, Sense, Ui, vec2};
 use glam::{DMat4, DVec2, DVec3, DVec4};
 
 use super::{
-    layout::{fitted, whole_size},
+    layout::{fit_aspect, whole_size},
     points::seen_at,
 };
 use crate::{
     app::{
-        picture::command::ViewCommand,
-        shell::{
-            command::{Command, Commands},
-            log::Level,
-            state::State,
-        },
+        picture::apply::measure,
+        shell::{command::Commands, log::Level, state::State},
         widgets::{
             panel::{describe, plate},
             text::short,
@@ -228,18 +224,18 @@ pub fn take_click(ui: &Ui, response: &Response, side: Rect, state: &State, comma
         return;
     };
     let size = whole_size(response.rect);
-    let at = fitted(side, size);
+    let at = fit_aspect(side, size);
     if !at.contains(pointer) {
         return;
     }
     let uv = (pointer - at.min) / at.size();
     let view = state.session.view_at(scene, size);
     match scene_point(scene, &view, DVec2::new(uv.x.into(), uv.y.into())) {
-        Some(point) => commands.send(Command::View(ViewCommand::Measure(Some(point)))),
-        None => commands.send(Command::Notify(
+        Some(point) => commands.run(move |app| measure(&mut app.state, Some(point))),
+        None => commands.notify(
             Level::Info,
-            "There is no triangle under this click, so no point is measured from".into(),
-        )),
+            "There is no triangle under this click, so no point is measured from",
+        ),
     }
 }
 

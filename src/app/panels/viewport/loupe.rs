@@ -1,12 +1,13 @@
 //! The loupe: the pixels round the one that the probe tells of, enlarged, with their values written
 //! in them where there is room.
 
-use eframe::egui::{self, Align2, Color32, FontId, Rect, Sense, Ui, pos2, vec2};
+use egui::{self, Align2, Color32, FontId, Rect, Sense, Ui, pos2, vec2};
 
 use crate::{
     app::{
-        picture::{command::ViewCommand, findings::Findings, overlay::OverlaySelection},
-        shell::command::{Command, Commands},
+        picture::apply::look_into,
+        picture::{findings::Findings, overlay::OverlaySelection},
+        shell::command::Commands,
         widgets::theme,
     },
     frame::NO_TRIANGLE,
@@ -105,7 +106,8 @@ impl Loupe {
             let at = (pointer - corner) / side;
             let inside = |t: f32, end: u32| (0.0..end as f32).contains(&t).then_some(t as u32);
             if let Some((x, y)) = inside(at.x, found.size[0]).zip(inside(at.y, found.size[1])) {
-                commands.send(Command::View(ViewCommand::Probe([x, y])));
+                let pixel = [x, y];
+                commands.run(move |app| look_into(&mut app.state, pixel, ""));
             }
         }
     }

@@ -1,18 +1,18 @@
 //! Picking: a click on the model sets a point parameter, or adds a part to those that an effect
 //! changes.
 
-use eframe::egui::{Rect, Response};
+use egui::{Rect, Response};
 use glam::DVec2;
 
 use super::{
-    layout::{fitted, whole_size},
+    layout::{fit_aspect, whole_size},
     points::PointSpace,
 };
 use crate::{
     app::{
-        picture::command::{Picking, ViewCommand},
+        picture::command::Picking,
         shell::{
-            command::{Command, Commands, Edit},
+            command::{Commands, Edit},
             log::Level,
             state::State,
         },
@@ -42,7 +42,7 @@ pub fn pick(
     };
     let size = whole_size(response.rect);
     // Side by side the picture is smaller, with nothing to click on around it.
-    let shown = fitted(side, size);
+    let shown = fit_aspect(side, size);
     if !shown.contains(at) {
         return;
     }
@@ -56,13 +56,13 @@ pub fn pick(
         uv,
     ) {
         Some(edit) => {
-            commands.send(Command::View(ViewCommand::Pick(None)));
+            commands.run(|app| app.state.picture.picking = None);
             commands.edit(edit);
         }
-        None => commands.send(Command::Notify(
+        None => commands.notify(
             Level::Info,
-            "There is no triangle under this click. Nothing was changed.".into(),
-        )),
+            "There is no triangle under this click. Nothing was changed.",
+        ),
     }
 }
 

@@ -1,14 +1,12 @@
 //! The probe: a click on a judged picture with overlays tells why the pixel shows what it shows.
 
-use eframe::egui::{self, Rect, Response, RichText, ScrollArea, Ui};
+use egui::{self, Rect, Response, RichText, ScrollArea, Ui};
 
 use super::{loupe::Loupe, overlay_legend::judged_pixel};
 use crate::app::{
-    picture::command::ViewCommand,
-    shell::{
-        command::{Command, Commands},
-        state::State,
-    },
+    picture::apply::look_into,
+    picture::apply::mark,
+    shell::{command::Commands, state::State},
     widgets::theme,
 };
 
@@ -20,7 +18,7 @@ pub fn take_click(response: &Response, state: &State, at: Rect, commands: &Comma
     if state.picture.picking.is_none()
         && let Some(pixel) = clicked.and_then(|pointer| judged_pixel(state, at, pointer))
     {
-        commands.send(Command::View(ViewCommand::Probe(pixel)));
+        commands.run(move |app| look_into(&mut app.state, pixel, ""));
     }
 }
 
@@ -65,6 +63,6 @@ pub fn probed_ui(ui: &Ui, loupe: &mut Loupe, state: &State, at: Rect, commands: 
             }
         });
     if !is_open {
-        commands.send(Command::View(ViewCommand::EndProbe));
+        commands.run(|app| mark(&mut app.state, None));
     }
 }

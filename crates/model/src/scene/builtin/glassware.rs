@@ -59,7 +59,7 @@ fn lacquer(color: [f32; 3], roughness: f32) -> Material {
 }
 
 /// At a place, stretched along the axes.
-fn placed(at: [f64; 3], scale: [f64; 3]) -> DMat4 {
+fn transform_of(at: [f64; 3], scale: [f64; 3]) -> DMat4 {
     DMat4::from_translation(at.into()) * DMat4::from_scale(scale.into())
 }
 
@@ -117,7 +117,7 @@ pub fn sunglasses(values: &Values) -> Result<Scene, BuiltinError> {
         let stand = DMat4::from_translation(DVec3::new(aside, 0.0, -PITCH_M * back)) * tipped(0.34);
         let mut part = |name: &str, mesh: MeshBuilder, material: &Material, at, scale| {
             let name = format!("{name} {}", pair + 1);
-            let place = stand * placed(at, scale);
+            let place = stand * transform_of(at, scale);
             add(&mut scene, &name, mesh, material.clone(), place);
         };
         let tint = glass(TINTS[pair as usize % TINTS.len()], 0.5);
@@ -145,7 +145,7 @@ pub fn sunglasses(values: &Values) -> Result<Scene, BuiltinError> {
         for (at, color) in BALLS.into_iter().enumerate() {
             let x = 0.56 * (at as f64 - 1.5) + aside;
             let z = -PITCH_M * back - 0.8 - 0.3 * f64::from(at as u32 % 2);
-            let place = placed([x, 0.25, z], [0.25; 3]);
+            let place = transform_of([x, 0.25, z], [0.25; 3]);
             let name = format!("ball {}", BALLS.len() * pair as usize + at + 1);
             add(&mut scene, &name, ball(), lacquer(color, 0.3), place);
         }
@@ -207,7 +207,7 @@ pub fn notch(values: &Values) -> Result<Scene, BuiltinError> {
             name,
             globe_mesh(8),
             lacquer(color, 0.3),
-            placed(at, [radius; 3]),
+            transform_of(at, [radius; 3]),
         );
     }
     Ok(scene)

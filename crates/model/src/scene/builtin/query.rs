@@ -132,7 +132,7 @@ pub fn parse(
             )));
         };
         if values[at]
-            .replace(checked(name, &builtin.params[at], text)?)
+            .replace(check_value(name, &builtin.params[at], text)?)
             .is_some()
         {
             return Err(BuiltinError(format!(
@@ -148,7 +148,7 @@ pub fn parse(
     Ok((builtin, Values { builtin, values }))
 }
 
-fn checked(builtin: &str, param: &BuiltinParam, text: &str) -> Result<f64, BuiltinError> {
+fn check_value(builtin: &str, param: &BuiltinParam, text: &str) -> Result<f64, BuiltinError> {
     let kind = if param.whole {
         "a whole number"
     } else {

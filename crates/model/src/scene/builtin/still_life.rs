@@ -153,12 +153,12 @@ pub fn build(values: &Values) -> Result<Scene, BuiltinError> {
     let at = |x: f64, y: f64, z: f64| DMat4::from_translation(DVec3::new(x, y, z));
     add(
         "table",
-        turned(TABLE, 2 * tess, &|_| DVec3::new(0.62, 0.50, 0.36)),
+        turn_outline(TABLE, 2 * tess, &|_| DVec3::new(0.62, 0.50, 0.36)),
         &[at(0.0, 0.0, 0.0)],
     );
     add(
         "bottle",
-        turned(BOTTLE, tess, &|p| {
+        turn_outline(BOTTLE, tess, &|p| {
             if p.y > 1.39 {
                 GLAZE[1]
             } else {
@@ -168,7 +168,7 @@ pub fn build(values: &Values) -> Result<Scene, BuiltinError> {
         &[at(0.08, 0.0, -0.62)],
     );
     let jug_at = at(-0.62, 0.0, -0.2) * rotation_y(0.5);
-    add("jug", turned(JUG, tess, &jug_color), &[jug_at]);
+    add("jug", turn_outline(JUG, tess, &jug_color), &[jug_at]);
     add("handle", tube(tess), &[jug_at]);
     let bowl_color = |p: DVec3| {
         if libm::hypot(p.x, p.z) < 0.56 && p.y > 0.085 + 0.3 * (p.x * p.x + p.z * p.z) {
@@ -179,7 +179,7 @@ pub fn build(values: &Values) -> Result<Scene, BuiltinError> {
     };
     add(
         "bowl",
-        turned(BOWL, tess, &bowl_color),
+        turn_outline(BOWL, tess, &bowl_color),
         &[at(0.66, 0.0, 0.02)],
     );
     let oranges = [
@@ -190,17 +190,17 @@ pub fn build(values: &Values) -> Result<Scene, BuiltinError> {
     ];
     add(
         "orange",
-        turned(ORANGE, tess, &|_| DVec3::new(0.88, 0.30, 0.02)),
+        turn_outline(ORANGE, tess, &|_| DVec3::new(0.88, 0.30, 0.02)),
         &oranges,
     );
     let pears = [
         at(-0.16, 0.0, 0.56),
         at(-0.72, 0.19, 0.66) * rotation_y(-2.6) * rotation_z(1.32),
     ];
-    add("pear", turned(PEAR, tess, &pear_color), &pears);
+    add("pear", turn_outline(PEAR, tess, &pear_color), &pears);
     add(
         "lemon",
-        turned(LEMON, tess, &|_| DVec3::new(0.90, 0.66, 0.05)),
+        turn_outline(LEMON, tess, &|_| DVec3::new(0.90, 0.66, 0.05)),
         &[at(0.34, 0.163, 0.83) * rotation_y(0.7) * rotation_z(1.6)],
     );
     Ok(scene)
@@ -266,7 +266,7 @@ fn spline(points: &[[f64; 2]], steps: u32) -> Vec<[DVec2; 2]> {
 }
 
 /// The closed surface that an outline sweeps about the vertical axis. It is a fan around each pole.
-fn turned(outline: Outline, tess: u32, color: &dyn Fn(DVec3) -> DVec3) -> MeshBuilder {
+fn turn_outline(outline: Outline, tess: u32, color: &dyn Fn(DVec3) -> DVec3) -> MeshBuilder {
     let (curve, around) = (spline(outline, tess), 8 * tess);
     let mut mesh = MeshBuilder::with_capacity(
         curve.len() * around as usize,
