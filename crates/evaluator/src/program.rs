@@ -97,6 +97,11 @@ impl Program {
         self.arguments.len() + self.alike.len()
     }
 
+    /// Those of them that samples have of their own.
+    pub fn own_argument_words(&self) -> usize {
+        self.arguments.len()
+    }
+
     /// Scalars of the result; 0 for a function without one.
     pub fn result_words(&self) -> usize {
         self.result.len()

@@ -53,6 +53,34 @@ pub fn call(program: &Program, arguments: &[Word]) -> Vec<Word> {
         .to_vec()
 }
 
+/// Results of whole numbers, of all samples at once.
+pub fn call_all(program: &Program, samples: &[Vec<i32>]) -> Vec<Vec<i32>> {
+    let mut registers = program.registers();
+    let mut alike = Vec::new();
+    for (lane, sample) in samples.iter().enumerate() {
+        alike.clear();
+        for (index, word) in sample.iter().copied().map(Word::from_i32).enumerate() {
+            match program.argument(&registers, index) {
+                Some(row) => row[lane].set(word),
+                None if index >= program.own_argument_words() => alike.push(word),
+                None => {}
+            }
+        }
+    }
+    let ended = program.run(&mut registers, &alike, samples.len(), &mut NoHost);
+    assert_eq!(ended.count_ones() as usize, samples.len());
+    let word = |lane: usize, at: usize| {
+        let row = program.result(&registers, at);
+        row.map_or(samples[lane][at], |row| row[lane].get().to_i32())
+    };
+    let result = |lane| {
+        (0..program.result_words())
+            .map(|at| word(lane, at))
+            .collect()
+    };
+    (0..samples.len()).map(result).collect()
+}
+
 pub fn floats(values: &[f64]) -> Vec<Word> {
     values.iter().map(|&value| Word::from_f64(value)).collect()
 }

@@ -410,10 +410,11 @@ impl Generator<'_> {
 fn statements() {
     for_seeds(256, |rng| {
         let mut random = Random(u64::from(rng.next_u32()) << 32 | u64::from(rng.next_u32()));
+        let (names, budget) = (0, 40);
         let mut generator = Generator {
             random: &mut random,
-            names: 0,
-            budget: 40,
+            names,
+            budget,
         };
         let (body, run) = generator.block(0, &mut Vec::new());
         let source = format!(
@@ -425,7 +426,6 @@ fn statements() {
             ..Options::default()
         };
         let program = program_with(&source, "f", &options);
-        let mut registers = program.registers();
         let own = 8 - options.alike;
         for count in [1, LANES, 1 + random.u32(LANES as u32) as usize] {
             let mut samples: Vec<[i32; 8]> = (0..count)
