@@ -3,6 +3,7 @@
 //! and beside all built-in effects. Needs no adapter.
 
 mod accepted;
+mod duplicates;
 mod given;
 mod mutated;
 mod numerics;

@@ -169,6 +169,7 @@ mod tests {
             amount: 0.5,
             attenuated: DVec3::new(0.5, 0.25, 0.0),
             is_opaque: true,
+            is_by_alpha: false,
         };
         let mut s = Surface::example(DVec3::new(0.2, 0.8, 0.4), 0);
         (s.finish.metallic, s.finish.specular) = (0.0, DVec4::new(0.1, 0.1, 0.1, 1.0));

@@ -13,7 +13,7 @@ use std::{
     sync::Arc,
 };
 
-pub use crate::legible::{is_hidden, legible, legible_line};
+pub use crate::legible::{group_digits, is_hidden, legible, legible_line, text_of};
 pub use measure::Measure;
 pub use suggest::{did_you_mean, likeness, suggestion};
 pub use value::{Stored, Value, ValueError, ValueType, format_number};

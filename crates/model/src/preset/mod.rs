@@ -30,10 +30,11 @@ use crate::{
         EnabledEffect, Stack,
         given::{Moment, words_of_view},
     },
-    math::rotation_y,
+    math::{rotation_y, turned_about},
     scene::{
         Bounds, Ground, Scene,
         camera::Camera,
+        needs,
         parts::ShownParts,
         pose::{Motion, Pose, scene_from_nodes},
         punctual::{PlacedLight, SceneLight},
@@ -461,7 +462,7 @@ impl Preset {
             }));
         }
         if self.spin_deg_per_s != 0.0 {
-            points = turned_all_around(&points, DVec3::ZERO);
+            points = turned_all_around(&points, scene.axis());
         }
         points
     }
@@ -511,7 +512,7 @@ impl Preset {
         let spin = if turns == 0.0 {
             DMat4::IDENTITY
         } else {
-            rotation_y(turns.fract() * std::f64::consts::TAU)
+            turned_about(scene.axis(), turns.fract() * std::f64::consts::TAU)
         };
         let pose = preset.pose(scene);
         let mut bounds = preset.with_particles(
@@ -538,7 +539,9 @@ impl Preset {
             if scene.walls > 0 {
                 // Walls do not turn with the scene; this box holds them at every angle.
                 let aside = DVec3::new(std::f64::consts::SQRT_2, 1.0, std::f64::consts::SQRT_2);
-                (bounds.min, bounds.max) = (bounds.min * aside, bounds.max * aside);
+                let axis = scene.axis();
+                let moved = |corner: DVec3| axis + (corner - axis) * aside;
+                (bounds.min, bounds.max) = (moved(bounds.min), moved(bounds.max));
             }
         }
         let pins = &preset.accuracy.pins;
@@ -560,6 +563,8 @@ impl Preset {
             ..view
         }
         .with_shadow(shadow);
+        let is_far = needs::is_far(scene, &view);
+        let view = view.with_grid(view.precision.subpixel_bits, is_far);
         if scene.ground_instances().is_empty() {
             view
         } else {

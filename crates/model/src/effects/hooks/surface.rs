@@ -141,6 +141,8 @@ pub struct Transmission {
     pub attenuated: DVec3,
     /// Its alpha is not read: it covers all that lies behind it.
     pub is_opaque: bool,
+    /// Its alpha is how much of that passes at all.
+    pub is_by_alpha: bool,
 }
 
 impl Transmission {
@@ -151,13 +153,15 @@ impl Transmission {
             amount,
             attenuated: amount * DVec3::from(material.attenuation.map(f64::from)),
             is_opaque: !material.is_blended,
+            is_by_alpha: material.transmits_by_alpha,
         })
     }
 
     /// The surface of glass: what passes is tinted by its color, which scatters the rest. Metals let
     /// nothing through.
     pub fn through(&self, mut s: Surface) -> Surface {
-        let through = 1.0 - s.finish.metallic;
+        let alpha = if self.is_by_alpha { s.color.w } else { 1.0 };
+        let through = (1.0 - s.finish.metallic) * alpha;
         let base = s.color.truncate() - s.glow;
         let scattered = base * (1.0 - self.amount * through) + s.glow;
         s.passed = base * self.attenuated * through;
