@@ -25,7 +25,7 @@ use super::effect_inputs::{between, direction, parameters, surface, vector, whol
 const TOLERANCE: f64 = 1e-9;
 
 /// Effects whose text and function are meant to differ by more: lib/angle has a polynomial for the
-/// sine, within 3.4e-9 of it, and a series for the direction, within 2^-24 of it.
+/// sine, within 3.4e-9 of it.
 const LOOSER: &[(&str, f64)] = &[
     // Multiplied by the arm.
     ("explode", 1e-7),

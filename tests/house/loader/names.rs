@@ -113,6 +113,26 @@ fn names_of_another_encoding_stay_distinct() {
         .map(|p| scene.materials[p.material].base_color[0])
         .collect();
     assert_eq!((colors, scene.notes.len()), (vec![0.0, 1.0, 1.0], 0));
+    // Of a JSON too, whose other names stay as they are.
+    let json = Model::textured()
+        .with("/materials/0/name", json!("ROT \u{7ea2}"))
+        .with("/images/0/name", json!("ROT"))
+        .json
+        .to_string();
+    let bytes: Vec<u8> = json.replace("\"ROT\"", "\"%\"").into_bytes();
+    let images = [0xba, 0xbb].map(|byte| {
+        let mut bytes = bytes.clone();
+        let at = bytes.iter().position(|&b| b == b'%').expect("a name");
+        bytes[at] = byte;
+        let scene = rasterlab::scene::gltf::load(
+            &glb(&bytes, &Model::textured().bytes),
+            &mut |_, _| unreachable!(),
+        );
+        let scene = scene.expect("a model");
+        assert_eq!(scene.materials[0].name, "ROT \u{7ea2}");
+        scene.images[0].name.clone()
+    });
+    assert_ne!(images[0], images[1]);
     let mut shown: Vec<String> = parts(&scene).into_iter().map(|part| part.name).collect();
     shown.sort();
     shown.dedup();

@@ -19,7 +19,7 @@ mod native {
     };
 
     /// Most names of a folder that are looked through.
-    const MOST_NAMES: usize = 10_000;
+    const MOST_NAMES: usize = 4096;
 
     /// Opens a file to be read.
     pub fn open(path: &Path) -> io::Result<File> {

@@ -81,7 +81,7 @@ impl Scene {
             ..Material::default()
         });
         let material = self.materials.len() - 1;
-        let origin = self.mesh_origin(center, reach);
+        let origin = Self::mesh_origin(&self.content_bounds(), center, reach);
         let primitive = mesh(ground, center - origin, reach).append(&mut self, "ground", material);
         let named_node = Some(self.add_named_node("ground"));
         // Walls stay last.

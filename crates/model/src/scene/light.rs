@@ -40,6 +40,11 @@ pub fn light_view(toward: DVec3, scene: &Scene, view: &View, max_displacement_m:
             max: DVec3::ZERO,
         };
     }
+    // Of a scene that does not move, the casters are all of it.
+    let content = match scene.rig.is_empty() {
+        true => bounds,
+        false => scene.content_bounds(),
+    };
     (bounds.min, bounds.max) = (
         bounds.min - max_displacement_m,
         bounds.max + max_displacement_m,
@@ -58,8 +63,7 @@ pub fn light_view(toward: DVec3, scene: &Scene, view: &View, max_displacement_m:
     let side_m = rounded_up(needed_m * f64::from(side) / (f64::from(side) - 2.0 * BORDER));
     let texel_m = side_m / f64::from(side);
     // Whole texels from the scene, where it does not stand about the origin.
-    let content = scene.content_bounds();
-    let anchor = scene.mesh_origin(content.center(), content.radius());
+    let anchor = Scene::mesh_origin(&content, content.center(), content.radius());
     let origin = axes.plane(anchor);
     let middle = origin + (((low + high) * 0.5 - origin) / texel_m).round() * texel_m;
     let eye = axes.right * middle.x + axes.up * middle.y + toward * toward.dot(anchor);

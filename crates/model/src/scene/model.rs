@@ -415,8 +415,8 @@ impl Scene {
     /// What counts from the file's origin where the scene is about that, and else from `center`, so
     /// that a scene looks the same wherever it lies: meshes of a ground and a room, which reach so
     /// far, and shadow maps.
-    pub(super) fn mesh_origin(&self, center: DVec3, reach: f64) -> DVec3 {
-        let Bounds { min, max } = self.content_bounds();
+    pub(super) fn mesh_origin(content: &Bounds, center: DVec3, reach: f64) -> DVec3 {
+        let Bounds { min, max } = content;
         let is_inside = min.x.max(min.z) < 0.0 && max.x.min(max.z) > 0.0;
         let is_near = is_inside && center.y.abs() <= 8.0 * reach;
         if is_near { DVec3::ZERO } else { center }

@@ -38,7 +38,7 @@ impl Scene {
             min: axis + DVec3::new(-half, floor, -half),
             max: axis + DVec3::new(half, ceiling, half),
         };
-        let origin = self.mesh_origin(room.center(), half);
+        let origin = Self::mesh_origin(&bounds, room.center(), half);
         let half_size = (room.max - room.min) * 0.5;
         self.materials.push(Material {
             name: "plaster".into(),

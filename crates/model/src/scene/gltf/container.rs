@@ -128,9 +128,15 @@ pub fn text<'a>(json: &'a [u8], notes: &Notes) -> Cow<'a, str> {
         );
         plain = &plain[..plain.len() - padding];
     }
-    let text = String::from_utf8_lossy(plain);
-    if matches!(text, Cow::Owned(_)) {
-        notes.fault(|| "the JSON has bytes that are not UTF-8; their characters are replaced");
+    if let Ok(text) = std::str::from_utf8(plain) {
+        return text.into();
     }
-    text
+    notes.fault(|| "the JSON has bytes that are not UTF-8; their characters are replaced");
+    // By those of their numbers, so that names stay distinct.
+    let mut text = String::with_capacity(plain.len());
+    for chunk in plain.utf8_chunks() {
+        text.push_str(chunk.valid());
+        text.extend(chunk.invalid().iter().copied().map(char::from));
+    }
+    text.into()
 }

@@ -76,12 +76,7 @@ pub fn decode(
             "it has {width} x {height} texels; allowed: 1 to {side} along each side"
         )));
     }
-    // Larger ones are halved.
-    let mut decoded = 4 * u64::from(width) * u64::from(height);
-    let mut longest = width.max(height);
-    while longest > limits::IMAGE_SIDE {
-        (longest, decoded) = (longest / 2, decoded / 4);
-    }
+    let decoded = 4 * u64::from(width) * u64::from(height);
     if decoded > left {
         return Err(allowed.exceeded(
             format_args!("with it the decoded images have {} bytes", taken + decoded),

@@ -26,6 +26,9 @@ use crate::scene::{
 /// Most material files of a line.
 const MOST_FILES: usize = 64;
 
+/// Most options of a texture, and words that may be values of one that nobody knows.
+const MOST_OPTIONS: usize = 16;
+
 /// Options of textures, with the most values that follow them.
 const OPTIONS: &[(&str, usize)] = &[
     ("-blendu", 1),
@@ -220,13 +223,11 @@ impl Map {
             scale: [1.0; 2],
             offset: [0.0; 2],
         };
-        let mut rest = line;
-        let mut is_known = true;
-        loop {
+        let (mut rest, mut is_known) = (line, true);
+        for _ in 0..MOST_OPTIONS {
             let (word, behind) = split(rest);
             if let Some((name, values)) = OPTIONS.iter().find(|(name, _)| *name == word) {
                 rest = map.option(name, *values, behind);
-                is_known = true;
             } else if word.len() > 1 && word.starts_with('-') && !behind.is_empty() {
                 // Its values are unknown too: up to the next option, if there is one.
                 let next = OPTIONS
@@ -234,26 +235,22 @@ impl Map {
                     .filter_map(|(name, _)| behind.find(&format!(" {name} ")));
                 rest = behind[next.min().unwrap_or(0)..].trim_ascii_start();
                 is_known = false;
-                map.names.push(line.to_owned());
             } else {
                 break;
             }
         }
-        let mut add = |name: &str| {
-            let name = name.trim_matches('"');
-            if !name.is_empty() {
-                map.names.push(name.to_owned());
-            }
-        };
-        add(rest);
-        while !is_known && rest.contains(|c: char| c.is_ascii_whitespace()) {
-            rest = split(rest).1;
-            add(rest);
-        }
-        // The shortest is what messages name; the line itself is the least likely.
-        if !is_known {
-            map.names.reverse();
-        }
+        // Messages name the shortest, and the line itself is the least likely.
+        let words: Vec<&str> = rest.rsplitn(MOST_OPTIONS, ' ').collect();
+        let ends = (1..words.len()).map(|count| {
+            let length: usize = words[..count].iter().map(|word| word.len() + 1).sum();
+            &rest[rest.len() + 1 - length..]
+        });
+        let values = ends.filter(|_| !is_known);
+        let names = values.chain([rest, line].into_iter().take(if is_known { 1 } else { 2 }));
+        map.names = names
+            .map(|name| name.trim_matches('"').to_owned())
+            .filter(|name| !name.is_empty())
+            .collect();
         (!map.names.is_empty()).then_some(map)
     }
 

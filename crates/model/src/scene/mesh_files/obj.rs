@@ -142,8 +142,13 @@ fn next_line(stream: &mut Stream, line: &mut Vec<u8>) -> Result<bool, LoadError>
 /// Does the next line continue it? A backslash may be the second byte of a character that is not
 /// UTF-8.
 fn continues(line: &[u8]) -> bool {
-    let is_second = || matches!(text_of(line).chars().last(), Some(c) if c != '\\');
-    line.ends_with(b"\\") && !is_second()
+    let Some((b'\\', before)) = line.split_last() else {
+        return false;
+    };
+    let tail = &before[before.len().saturating_sub(64)..];
+    let run = tail.iter().rev().take_while(|&&byte| byte > 0x80).count();
+    let is_second = run % 2 == 1 && std::str::from_utf8(&tail[tail.len() - run..]).is_err();
+    !is_second
 }
 
 /// What faces refer to.
