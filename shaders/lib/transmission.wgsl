@@ -11,7 +11,7 @@ struct TransmissionRecord {
     green: f32,
     blue: f32,
     amount: f32, // fraction that its color does not scatter
-    is_opaque: u32, // 1: its alpha covers all
+    is_opaque: u32, // 1: its alpha covers all; 2: its alpha is how much passes
 }
 
 const TRANSMISSION_WORDS = 5u;

@@ -182,7 +182,7 @@ fn shade_step_transmission(surface: Surface, t: Triangle, at: vec3u, position: S
     var s = surface;
     if (draws[t.draw].flags & DRAW_GLASS) == 0u { return s; }
     let transmission = transmission_record(atlas_record(t.draw));
-    let through = 1.0 - s.finish.metallic;
+    let through = (1.0 - s.finish.metallic) * select(1.0, s.color.a, transmission.is_opaque > 1u);
     let base = s.color.rgb - s.glow;
     s.passed = base * vec3f(transmission.red, transmission.green, transmission.blue) * through;
     s.color = vec4f(base * (1.0 - transmission.amount * through) + s.glow, select(s.color.a, 1.0, transmission.is_opaque != 0u));

@@ -1,5 +1,45 @@
 //! Messages that quote files of anyone, made safe to show.
 
+use std::borrow::Cow;
+
+/// Stands for the backslash that is the second byte of a character of another encoding, and so
+/// separates no folders.
+const SECOND_BACKSLASH: char = '\u{f05c}';
+
+/// Text of a file of anyone. Bytes that are not UTF-8 are of an encoding that nobody names: each
+/// becomes the character of its number, so that names stay distinct and still tell the bytes of the
+/// file that they name.
+pub fn text_of(bytes: &[u8]) -> Cow<'_, str> {
+    match std::str::from_utf8(bytes) {
+        Ok(text) => text.into(),
+        Err(_) => {
+            let mut is_second = false;
+            let character = |&byte: &u8| {
+                let of_pair = is_second;
+                is_second = !is_second && byte > 0x80;
+                match byte {
+                    b'\\' if of_pair => SECOND_BACKSLASH,
+                    byte => byte.into(),
+                }
+            };
+            bytes.iter().map(character).collect()
+        }
+    }
+}
+
+/// `1234567` as `1,234,567`.
+pub fn group_digits(number: u64) -> String {
+    let digits = number.to_string();
+    let mut text = String::new();
+    for (index, digit) in digits.chars().enumerate() {
+        if index > 0 && (digits.len() - index).is_multiple_of(3) {
+            text.push(',');
+        }
+        text.push(digit);
+    }
+    text
+}
+
 /// Most characters of a message that quotes a file.
 const MAX_CHARS: usize = 1000;
 /// Of a longer one: how many of its first and of its last characters are shown. The last say what
@@ -73,6 +113,21 @@ pub fn legible_name(name: &str, most: usize) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn bytes_of_another_encoding_stay_distinct_and_text_stays_as_it_is() {
+        assert_eq!(text_of("a \u{7ea2}".as_bytes()), "a \u{7ea2}");
+        let [red, black] = [&b"\xba\xec.png"[..], b"\xba\xda.png"].map(text_of);
+        assert_eq!(
+            [&red[..], &black[..]],
+            ["\u{ba}\u{ec}.png", "\u{ba}\u{da}.png"]
+        );
+        // A separator of folders is one byte, and so is no part of a pair.
+        assert_eq!(
+            text_of(b"\x95\\\x8e\x86\\a"),
+            "\u{95}\u{f05c}\u{8e}\u{86}\\a"
+        );
+    }
 
     #[test]
     fn what_steers_a_terminal_or_reorders_text_is_written_out() {

@@ -72,6 +72,15 @@ pub fn rotation_y(radians: f64) -> DMat4 {
     )
 }
 
+/// A rotation about a vertical axis through a point.
+pub fn turned_about(axis: DVec3, radians: f64) -> DMat4 {
+    let turn = rotation_y(radians);
+    match axis == DVec3::ZERO {
+        true => turn,
+        false => DMat4::from_translation(axis) * turn * DMat4::from_translation(-axis),
+    }
+}
+
 /// A gamma-encoded value from 0 to 1 as linear light (IEC 61966-2-1).
 pub fn linear_light(encoded: f64) -> f64 {
     if encoded <= 0.040_45 {

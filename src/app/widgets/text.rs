@@ -1,17 +1,6 @@
 //! Numbers as people read them.
 
-/// `1234567` as `1,234,567`.
-pub fn grouped(number: u64) -> String {
-    let digits = number.to_string();
-    let mut text = String::new();
-    for (index, digit) in digits.chars().enumerate() {
-        if index > 0 && (digits.len() - index).is_multiple_of(3) {
-            text.push(',');
-        }
-        text.push(digit);
-    }
-    text
-}
+pub use crate::params::group_digits;
 
 /// `1.5 MiB`.
 pub fn bytes(bytes: u64) -> String {
@@ -64,7 +53,7 @@ mod tests {
     #[test]
     fn digits_are_grouped_by_three() {
         assert_eq!(
-            [grouped(7), grouped(1000), grouped(1_234_567)],
+            [group_digits(7), group_digits(1000), group_digits(1_234_567)],
             ["7", "1,000", "1,234,567"]
         );
     }

@@ -8,14 +8,18 @@ pub use page::*;
 
 #[cfg(not(target_arch = "wasm32"))]
 mod native {
+    use std::{
+        ffi::OsString,
+        io,
+        path::{Path, PathBuf},
+    };
     pub use std::{
         fs::{File, create_dir_all as create_folder, read, read_to_string},
         path::absolute,
     };
-    use std::{
-        io,
-        path::{Path, PathBuf},
-    };
+
+    /// Most names of a folder that are looked through.
+    const MOST_NAMES: usize = 4096;
 
     /// Opens a file to be read.
     pub fn open(path: &Path) -> io::Result<File> {
@@ -34,6 +38,12 @@ mod native {
         path.exists()
     }
 
+    /// The names in a folder, as many as anyone would look through; none where it cannot be read.
+    pub fn names_in(folder: &Path) -> Option<Vec<OsString>> {
+        let entries = std::fs::read_dir(folder).ok()?.take(MOST_NAMES);
+        Some(entries.flatten().map(|entry| entry.file_name()).collect())
+    }
+
     /// Where a path leads to through symbolic links.
     pub fn canonical(path: &Path) -> io::Result<PathBuf> {
         path.canonicalize()
@@ -44,6 +54,7 @@ mod native {
 mod page {
     use std::{
         collections::BTreeMap,
+        ffi::OsString,
         io::{self, Cursor, ErrorKind, Read, Seek, SeekFrom},
         path::{Path, PathBuf},
         sync::{
@@ -146,6 +157,19 @@ mod page {
 
     pub fn exists(path: &Path) -> bool {
         files().contains_key(path)
+    }
+
+    /// A page looks up what it was given by its whole path.
+    pub fn names_in(folder: &Path) -> Option<Vec<OsString>> {
+        let files = files();
+        let inside = files
+            .keys()
+            .filter_map(|path| path.strip_prefix(folder).ok());
+        Some(
+            inside
+                .filter_map(|path| Some(path.iter().next()?.to_owned()))
+                .collect(),
+        )
     }
 
     pub fn canonical(path: &Path) -> io::Result<PathBuf> {

@@ -6,14 +6,15 @@
 
 use std::{
     cell::Cell,
+    ffi::OsString,
     io::{self, Read as _, Seek as _, SeekFrom},
     ops::Range,
-    path::Path,
+    path::{Path, PathBuf},
 };
 
 use super::disk;
 use crate::{
-    params::legible_line,
+    params::{legible_line, text_of},
     scene::{
         Scene,
         gltf::{self, LoadError, PART_BYTES, ReadFile, Source, limits::Limits, reserve},
@@ -77,7 +78,11 @@ fn read_beside(
         .filter(|folder| !folder.as_os_str().is_empty())
         .unwrap_or(Path::new("."));
     let folder = disk::canonical(folder).map_err(failed)?;
-    let path = disk::canonical(&folder.join(beside)).map_err(failed)?;
+    let path = disk::canonical(&folder.join(beside)).or_else(|error| {
+        let similar = similar(&folder, beside).ok_or(error)?;
+        disk::canonical(&similar)
+    });
+    let path = path.map_err(failed)?;
     if !path.starts_with(&folder) {
         return Err(LoadError::new(
             "it lies outside the model's folder; copy it there",
@@ -88,6 +93,30 @@ fn read_beside(
     reserve(&mut bytes, file.size)?;
     file.append_to(&mut bytes, 0..file.size)?;
     Ok(bytes)
+}
+
+/// The only file below `folder` that `wanted` may mean: its name has the same bytes, in whatever
+/// encoding, or other cases of the same letters.
+fn similar(folder: &Path, wanted: &Path) -> Option<PathBuf> {
+    let mut path = folder.to_owned();
+    for part in wanted {
+        let exact = path.join(part);
+        if disk::exists(&exact) {
+            path = exact;
+            continue;
+        }
+        let wanted = part.to_str()?;
+        let names = disk::names_in(&path)?;
+        let text = |name: &OsString| text_of(name.as_encoded_bytes()).into_owned();
+        let same = names.iter().find(|name| text(name) == wanted);
+        let folded = wanted.to_lowercase();
+        let mut alike = names
+            .iter()
+            .filter(|name| text(name).to_lowercase() == folded);
+        let only = alike.next().filter(|_| alike.next().is_none());
+        path.push(same.or(only)?);
+    }
+    Some(path)
 }
 
 /// A regular file, and how much of it was read.

@@ -20,7 +20,6 @@ use crate::{
         queues::{Capacities, first_capacities, recorded_capacities},
         records::{CounterRecord, ScalingUniform, punctual_lights},
     },
-    math::SUBPIXEL_BITS,
     plan::{AccuracyRequest, Plan, Planner, Tuning},
     resources::buffers::Buffers,
     scene::{Background, Scene, draw::Draw, needs::Needs, parts::Scope, view::View},
@@ -274,7 +273,7 @@ impl ViewResources {
             options.position_format == PositionFormat::Relative,
         );
         view = view.with_grid(subpixel_bits, is_relative);
-        if is_relative || subpixel_bits != SUBPIXEL_BITS {
+        if view.precision != request.view.precision {
             seen = self.see(&device.gpu, scene, &view, request)?;
             plan = self.plan_of(device, seen, request)?;
         }

@@ -260,7 +260,10 @@ fn transmission(primitive: &Primitive, scene: &Scene) -> TransmissionRecord {
             green,
             blue,
             amount: transmission.amount as f32,
-            is_opaque: transmission.is_opaque.into(),
+            is_opaque: match transmission.is_by_alpha {
+                true => 2,
+                false => transmission.is_opaque.into(),
+            },
         }
     })
 }

@@ -175,18 +175,21 @@ fn is_unused(index: usize, inputs: &Inputs) -> bool {
     }
 }
 
-/// The predicted cost of positions as they are stored, where it exceeds the tolerance: then
-/// positions relative to the eye are taken unasked, since they cost no time. A strict picture
-/// follows from the preset alone.
+/// The predicted cost of positions as they are stored, where the view asks for others or it exceeds
+/// the tolerance: then positions relative to the eye are taken unasked, since they cost no time. A
+/// strict picture follows from the preset alone, as the view does.
 fn far_from_origin(options: &AccuracyOptions, inputs: &Inputs) -> Option<Prediction> {
     let stored = predict(
         PositionFormat::AXIS,
         options.position_format.index(),
         inputs.needs,
     );
-    let is_fixed = inputs.request.pins.option::<PositionFormat>().is_some()
-        || options.vertex_transform == VertexTransform::Strict;
-    (!is_fixed && !stored.is_within(&inputs.request.tolerance())).then_some(stored)
+    if inputs.request.pins.option::<PositionFormat>().is_some() {
+        return None;
+    }
+    let is_strict = options.vertex_transform == VertexTransform::Strict;
+    let is_over = !is_strict && !stored.is_within(&inputs.request.tolerance());
+    (inputs.needs.is_far || is_over).then_some(stored)
 }
 
 /// The option of the axis that saves the most time within the tolerance, if any does.

@@ -8,7 +8,7 @@ use crate::{
         PositionFormat, RenderScale, Tolerance, Transparency, VertexTransform, Visibility,
         XraySums,
     },
-    scene::needs::Needs,
+    scene::needs::{Needs, outgrows},
 };
 
 /// Error of a picture against the oracle's, as predicted before it is drawn.
@@ -118,9 +118,7 @@ fn vertices(option: PositionFormat, needs: &Needs) -> Prediction {
             0.25 * needs.box_px / libm::exp2(bits.into()),
             needs,
         )),
-        // Within a unit of the grid every bound is at home; beyond it the relative one tells what
-        // the offset costs.
-        (PositionFormat::Stored, _) if stored > 2.0 * relative.max(1.0 / 256.0) => {
+        (PositionFormat::Stored, _) if outgrows(needs.rounding_px) => {
             Prediction::wrong(moved_ppm(USUAL * (stored - relative), needs))
         }
         _ => Prediction::default(),

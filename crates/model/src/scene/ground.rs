@@ -81,7 +81,8 @@ impl Scene {
             ..Material::default()
         });
         let material = self.materials.len() - 1;
-        let primitive = mesh(ground, center, reach).append(&mut self, "ground", material);
+        let origin = Self::mesh_origin(&self.content_bounds(), center, reach);
+        let primitive = mesh(ground, center - origin, reach).append(&mut self, "ground", material);
         let named_node = Some(self.add_named_node("ground"));
         // Walls stay last.
         let index = self.instances.len() - self.walls;
@@ -89,7 +90,7 @@ impl Scene {
             index,
             Instance {
                 named_node,
-                ..Instance::fixed(primitive, DMat4::IDENTITY)
+                ..Instance::fixed(primitive, DMat4::from_translation(origin))
             },
         );
         self.grounds += 1;

@@ -8,7 +8,7 @@ use super::{
     camera::{Camera, Projection},
     model::Scene,
     pose::Pose,
-    view::{SceneState, View},
+    view::{SceneState, View, ViewPrecision},
 };
 
 /// Empty texels along every border: half the widest filter, and one for rounding.
@@ -40,6 +40,11 @@ pub fn light_view(toward: DVec3, scene: &Scene, view: &View, max_displacement_m:
             max: DVec3::ZERO,
         };
     }
+    // Of a scene that does not move, the casters are all of it.
+    let content = match scene.rig.is_empty() {
+        true => bounds,
+        false => scene.content_bounds(),
+    };
     (bounds.min, bounds.max) = (
         bounds.min - max_displacement_m,
         bounds.max + max_displacement_m,
@@ -57,8 +62,11 @@ pub fn light_view(toward: DVec3, scene: &Scene, view: &View, max_displacement_m:
         .max(1e-6);
     let side_m = rounded_up(needed_m * f64::from(side) / (f64::from(side) - 2.0 * BORDER));
     let texel_m = side_m / f64::from(side);
-    let middle = ((low + high) * 0.5 / texel_m).round() * texel_m;
-    let eye = axes.right * middle.x + axes.up * middle.y;
+    // Whole texels from the scene, where it does not stand about the origin.
+    let anchor = Scene::mesh_origin(&content, content.center(), content.radius());
+    let origin = axes.plane(anchor);
+    let middle = origin + (((low + high) * 0.5 - origin) / texel_m).round() * texel_m;
+    let eye = axes.right * middle.x + axes.up * middle.y + toward * toward.dot(anchor);
     let projection = Projection::Orthographic { height_m: side_m };
     let camera = Camera {
         eye,
@@ -81,7 +89,11 @@ pub fn light_view(toward: DVec3, scene: &Scene, view: &View, max_displacement_m:
             ..light.scene_state.clone()
         },
         picture_from_world: Some(view.clip_from_world),
-        ..light.with_shadow(view.precision.shadow)
+        precision: ViewPrecision {
+            subpixel_bits: light.precision.subpixel_bits,
+            ..view.precision
+        },
+        ..light
     }
 }
 

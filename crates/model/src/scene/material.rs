@@ -26,6 +26,8 @@ pub struct Material {
     /// Fraction of the light that its color, where it is no metal, does not scatter but lets through,
     /// 0 to 1: a thin wall that does not refract.
     pub transmission: f32,
+    /// The alpha of the base texture is the part of that fraction that counts at a place.
+    pub transmits_by_alpha: bool,
     /// What of that light is left behind its thickness: linear RGB, each 0 to 1.
     pub attenuation: [f32; 3],
     /// Emitted light, linear RGB, from 0 up.
@@ -166,6 +168,7 @@ impl Default for Material {
             // Glass, plastic and most else that is no metal: a refractive index of 1.5.
             specular: [0.04, 0.04, 0.04, 1.0],
             transmission: 0.0,
+            transmits_by_alpha: false,
             attenuation: [1.0; 3],
             emission: [0.0; 3],
             emission_texture: None,

@@ -403,6 +403,25 @@ impl Scene {
         self.content.unwrap_or_else(|| self.bounds())
     }
 
+    /// A point of the vertical axis about which the scene turns and a room stands: the file's origin
+    /// where the scene stands about that, else the middle of what is shown.
+    pub fn axis(&self) -> DVec3 {
+        let bounds = self.content_bounds();
+        let (middle, half) = (bounds.center().with_y(0.0), (bounds.max - bounds.min) * 0.5);
+        let is_about = middle.abs().max_element() <= 0.5 * half.x.max(half.z);
+        if is_about { DVec3::ZERO } else { middle }
+    }
+
+    /// What counts from the file's origin where the scene is about that, and else from `center`, so
+    /// that a scene looks the same wherever it lies: meshes of a ground and a room, which reach so
+    /// far, and shadow maps.
+    pub(super) fn mesh_origin(content: &Bounds, center: DVec3, reach: f64) -> DVec3 {
+        let Bounds { min, max } = content;
+        let is_inside = min.x.max(min.z) < 0.0 && max.x.min(max.z) > 0.0;
+        let is_near = is_inside && center.y.abs() <= 8.0 * reach;
+        if is_near { DVec3::ZERO } else { center }
+    }
+
     /// World-space box of `instances` in their rest pose.
     pub fn bounds_of<'a>(&self, instances: impl IntoIterator<Item = &'a Instance>) -> Bounds {
         let mut bounds = Bounds::EMPTY;

@@ -10,6 +10,7 @@ use rayon::prelude::*;
 
 use super::{
     accessor::ComponentType,
+    bounds::Bounds,
     draw::{Draw, MANY_DRAWS},
     material::Material,
     model::{Primitive, Scene, Topology},
@@ -17,7 +18,10 @@ use super::{
     sizes::TriangleSizes,
     view::View,
 };
-use crate::{accuracy::Skinning, math::GUARD_BAND};
+use crate::{
+    accuracy::Skinning,
+    math::{GUARD_BAND, SUBPIXEL_BITS},
+};
 
 /// What a scene in a view requires of the kernels.
 #[derive(Clone, Debug, PartialEq)]
@@ -54,7 +58,7 @@ pub struct Needs {
     pub glass_draws: usize,
     /// Materials that let light through.
     pub transmitting: usize,
-    /// Some material that blends has a texture.
+    /// Some material that blends, or that lets light through where its alpha says, has a texture.
     pub has_blended_textures: bool,
     /// Lights that come with the scene.
     pub lights: u32,
@@ -90,6 +94,8 @@ pub struct Needs {
     /// How far rounding may move a corner in the picture, pixels: from stored positions, and from
     /// positions relative to the eye. A bound at the boxes of a sample of the instances.
     pub rounding_px: [f64; 2],
+    /// The view asks for positions relative to the eye, since the scene lies far from its origin.
+    pub is_far: bool,
     /// Distances of the nearest and farthest corner of the scene's box along the viewing
     /// direction.
     pub depth_m: [f64; 2],
@@ -155,7 +161,8 @@ impl Needs {
             transmitting: count(Material::transmits),
             has_blended_textures: drawn().any(|p| {
                 let material = &scene.materials[p.material];
-                material.is_blended && material.base_texture.is_some()
+                let has_alpha = material.is_blended || material.transmits_by_alpha;
+                has_alpha && material.base_texture.is_some()
             }),
             morph_targets: draws.iter().any(|draw| {
                 draw.deform
@@ -183,7 +190,14 @@ impl Needs {
             largest_px,
             sizes: TriangleSizes::of(scene, draws, view),
             box_px: largest(box_px),
-            rounding_px: rounding_px(scene, draws, view),
+            rounding_px: rounding_px(
+                view,
+                sampled(draws).map(|(_, draw)| {
+                    let bounds = draw.object_bounds(&scene.primitives[draw.primitive]);
+                    (draw.world_from_object, bounds)
+                }),
+            ),
+            is_far: view.precision.is_relative,
             depth_m: view.depth_range_m,
             near_m: view.clip_from_world.w_axis.z.abs(),
             w_ratio: w_ratio(largest_px, view),
@@ -262,18 +276,52 @@ fn box_px(primitive: &Primitive, draw: &Draw, view: &View) -> f64 {
     [0, 1, 2].map(widest).into_iter().fold(0.0, f64::max)
 }
 
+/// Must positions be taken relative to the eye, since rounding would move stored ones visibly? The
+/// answer follows from scene and view alone, so that the oracle and every adapter give the same.
+pub fn is_far(scene: &Scene, view: &View) -> bool {
+    let pose = view.scene_state.pose.as_deref();
+    let turning = scene.instances.len() - scene.walls;
+    let placed = sampled(&scene.instances).map(|(index, instance)| {
+        let primitive = &scene.primitives[instance.primitive];
+        let world_from_scene = match index < turning {
+            true => view.scene_state.world_from_scene,
+            false => DMat4::IDENTITY,
+        };
+        let own = pose.map_or(instance.world_from_object, |pose| {
+            pose.instance_transform(index)
+        });
+        let deform = pose.and_then(|pose| pose.deform(index));
+        let bounds = deform.map_or(primitive.bounds, |deform| deform.bounds(primitive));
+        (world_from_scene * own, bounds)
+    });
+    outgrows(rounding_px(view, placed))
+}
+
+/// Does rounding move stored positions so much farther than those relative to the eye that it shows?
+/// Within a unit of the grid every bound is at home; beyond it the relative one tells what the
+/// offset costs.
+pub fn outgrows([stored, relative]: [f64; 2]) -> bool {
+    stored > 2.0 * relative.max(1.0 / f64::from(1u32 << SUBPIXEL_BITS))
+}
+
+/// Of many, a sample is enough.
+fn sampled<T>(all: &[T]) -> impl Iterator<Item = (usize, &T)> {
+    const SAMPLED: usize = 1024;
+    let step = all.len().div_ceil(SAMPLED).max(1);
+    all.iter().enumerate().step_by(step)
+}
+
 /// See [`Needs::rounding_px`]: the forward error bound of the vertex stage at the corners and
-/// middles of boxes, where they are in the picture.
-fn rounding_px(scene: &Scene, draws: &[Draw], view: &View) -> [f64; 2] {
+/// middles of boxes, where they are in the picture. Each box comes with its transform to the world.
+fn rounding_px(view: &View, placed: impl Iterator<Item = (DMat4, Bounds)>) -> [f64; 2] {
     const ULP: f64 = 1.0 / (1 << 23) as f64;
     let size = [f64::from(view.width), f64::from(view.height)];
-    let of_draw = |draw: &Draw| {
-        let bounds = draw.object_bounds(&scene.primitives[draw.primitive]);
+    let of_box = |(world_from_object, bounds): (DMat4, Bounds)| {
         if bounds.is_empty() {
             return [0.0; 2];
         }
-        let m = view.clip_from_world * draw.world_from_object;
-        let eye = draw.world_from_object.inverse().transform_point3(view.eye);
+        let m = view.clip_from_world * world_from_object;
+        let eye = world_from_object.inverse().transform_point3(view.eye);
         let origin = if eye.is_finite() {
             eye.clamp(bounds.min, bounds.max)
         } else {
@@ -309,10 +357,8 @@ fn rounding_px(scene: &Scene, draws: &[Draw], view: &View) -> [f64; 2] {
             ]
         })
     };
-    // Of many draws, a sample is enough.
-    const SAMPLED: usize = 1024;
-    let some = draws.iter().step_by(draws.len().div_ceil(SAMPLED).max(1));
-    some.map(of_draw)
+    placed
+        .map(of_box)
         .fold([0.0; 2], |[a, b], [c, d]| [a.max(c), b.max(d)])
 }
 

@@ -300,9 +300,34 @@ fn picture_at(picture: &LightPicture, d: DVec3) -> DVec3 {
     row(near.y).lerp(row(near.y + 1.0), part.y)
 }
 
+/// Sides with fewer pixels do not tell the second band from the first.
+const NARROW: usize = 16;
+
+/// A picture with pixels enough to add up directions: the same, but between the pixels of a narrow
+/// one.
+fn widened(picture: &LightPicture) -> Option<LightPicture> {
+    let [width, height] = picture.size.map(|side| match side {
+        ..NARROW => side * (16 * NARROW).div_ceil(side),
+        wide => wide,
+    });
+    let light = |i: usize| {
+        let [x, y] = [i % width, i / width].map(|at| at as f64 + 0.5);
+        let (right, ahead) = libm::sincos(TAU * (x / width as f64 - 0.5));
+        let (sin, cos) = libm::sincos(PI * y / height as f64);
+        picture_at(picture, DVec3::new(sin * right, cos, -sin * ahead))
+    };
+    ([width, height] != picture.size).then(|| LightPicture {
+        size: [width, height],
+        light: (0..width * height).map(light).collect(),
+        clamped: 0,
+    })
+}
+
 /// The quadratic form of a normal that gives the light on a matt surface: the mean over all
 /// directions of their light, weighted as the clamped cosine is up to the second band.
 fn form(picture: &LightPicture) -> [DVec3; 10] {
+    let wide = widened(picture);
+    let picture = wide.as_ref().unwrap_or(picture);
     let [width, height] = picture.size;
     let columns: Vec<(f64, f64)> = (0..width)
         .map(|x| libm::sincos(TAU * ((x as f64 + 0.5) / width as f64 - 0.5)))
@@ -414,6 +439,31 @@ mod tests {
             );
         }
         assert_eq!(light(word(DVec3::splat(1e9))), DVec3::splat(BRIGHTEST));
+    }
+
+    #[test]
+    fn a_narrow_picture_lights_as_a_wide_one_of_the_same_light() {
+        let of_rows = |size: [usize; 2]| {
+            let light = |i: usize| DVec3::splat(1.0 + (i / size[0]) as f64 / size[1] as f64);
+            Panorama::of(&LightPicture {
+                size,
+                light: (0..size[0] * size[1]).map(light).collect(),
+                clamped: 0,
+            })
+            .expect("nobody cancels it")
+        };
+        let near = |a: &Panorama, b: &Panorama, normal| {
+            let error = (a.irradiance(normal) - b.irradiance(normal)).length();
+            assert!(error < 1e-3, "{normal}: {error}");
+        };
+        let wide = of_rows([64, 64]);
+        let even = of_rows([1, 1]);
+        for normal in directions(12) {
+            for width in 1..=3 {
+                near(&of_rows([width, 64]), &wide, normal);
+            }
+            assert!((even.irradiance(normal) - 1.0).length() < 1e-3, "{normal}");
+        }
     }
 
     #[test]

@@ -14,7 +14,7 @@ use super::{
     joint_transforms::{DualQuaternionJoint, JointTransforms, rounded_rows},
     model::{Instance, Primitive, Scene},
     quaternion::{slerp, unit},
-    rig::{Interpolation, LocalTransform, Property, Rig, Sampler, Skin, Trs},
+    rig::{Interpolation, LocalTransform, Property, Rig, Sampler, Trs},
 };
 use crate::accuracy::Skinning;
 
@@ -57,12 +57,24 @@ impl Pose {
         let rig = &scene.rig;
         let state = State::of(rig, motion);
         let scene_from_node = state.node_transforms(rig);
-        let joint_transforms = |skin: &Skin| {
+        // The matrices of joints are rounded, so those of a skeleton that is far away count from it.
+        let origin = |skin: usize| {
+            const NEAR_M: f64 = 4096.0;
+            let first = rig.skins[skin].joints.first();
+            let place = first.map_or(DVec3::ZERO, |&node| scene_from_node[node].w_axis.truncate());
+            match place.abs().max_element() {
+                distance if distance < NEAR_M || !place.is_finite() => DVec3::ZERO,
+                _ => place.round(),
+            }
+        };
+        let joint_transforms = |skin: usize| {
+            let from_scene = DMat4::from_translation(-origin(skin));
+            let skin = &rig.skins[skin];
             let matrices = skin
                 .joints
                 .iter()
                 .zip(&skin.joint_from_mesh)
-                .map(|(&node, inverse)| scene_from_node[node] * *inverse);
+                .map(|(&node, inverse)| from_scene * scene_from_node[node] * *inverse);
             match motion.skinning {
                 Skinning::Linear => {
                     JointTransforms::Linear(matrices.map(|matrix| rounded_rows(&matrix)).collect())
@@ -75,7 +87,7 @@ impl Pose {
             }
         };
         let joints_of_skins: Vec<JointTransforms> =
-            rig.skins.iter().map(joint_transforms).collect();
+            (0..rig.skins.len()).map(joint_transforms).collect();
         let deform = |instance: &Instance| {
             let morph_targets = scene.primitives[instance.primitive]
                 .deformation
@@ -96,7 +108,7 @@ impl Pose {
         let transform = |instance: &Instance| match (instance.skin, instance.node) {
             // The joints alone place a skinned mesh; its node is ignored (glTF 2.0, section
             // 3.7.3.2).
-            (Some(_), _) => DMat4::IDENTITY,
+            (Some(skin), _) => DMat4::from_translation(origin(skin)),
             (None, Some(node)) => instance
                 .placement
                 .map_or(scene_from_node[node], |placement| {

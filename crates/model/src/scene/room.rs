@@ -19,14 +19,15 @@ const GAP: f64 = 1e-3;
 
 impl Scene {
     /// Adds a room whose width is `times` the width of the scene, or its height where that is more.
-    /// The room stands still while the scene spins about its vertical axis.
+    /// The room stands still while the scene spins about its vertical [axis](Scene::axis).
     #[must_use]
     pub fn in_room(mut self, times: f64) -> Self {
         let bounds = self.bounds();
         if bounds.is_empty() {
             return self;
         }
-        let reach = |corner: DVec3| libm::hypot(corner.x, corner.z);
+        let axis = self.axis();
+        let reach = |corner: DVec3| libm::hypot(corner.x - axis.x, corner.z - axis.z);
         let height = bounds.max.y - bounds.min.y;
         let widest = bounds.corners().map(reach).into_iter().fold(1e-6, f64::max);
         let half = times * widest.max(0.5 * height);
@@ -34,20 +35,23 @@ impl Scene {
         let floor = bounds.min.y - GAP * height;
         let ceiling = floor + (2.0 * half).min(height * (1.0 + times)).max(height * 1.1);
         let room = Bounds {
-            min: DVec3::new(-half, floor, -half),
-            max: DVec3::new(half, ceiling, half),
+            min: axis + DVec3::new(-half, floor, -half),
+            max: axis + DVec3::new(half, ceiling, half),
         };
+        let origin = Self::mesh_origin(&bounds, room.center(), half);
+        let half_size = (room.max - room.min) * 0.5;
         self.materials.push(Material {
             name: "plaster".into(),
             base_color: [0.62, 0.6, 0.57, 1.0],
             ..Material::default()
         });
         let material = self.materials.len() - 1;
-        let primitive = walls(&room).append(&mut self, "room", material);
+        let primitive =
+            walls(room.center() - origin, half_size).append(&mut self, "room", material);
         let named_node = Some(self.add_named_node("room"));
         self.instances.push(Instance {
             named_node,
-            ..Instance::fixed(primitive, DMat4::IDENTITY)
+            ..Instance::fixed(primitive, DMat4::from_translation(origin))
         });
         self.walls += 1;
         self.content = self.content.or(Some(bounds));
@@ -64,10 +68,9 @@ impl Scene {
     }
 }
 
-/// Six walls whose front faces point inwards.
-fn walls(room: &Bounds) -> MeshBuilder {
+/// Six walls about a center whose front faces point inwards.
+fn walls(center: DVec3, half: DVec3) -> MeshBuilder {
     let mut mesh = MeshBuilder::default();
-    let (center, half) = (room.center(), (room.max - room.min) * 0.5);
     for axis in 0..3 {
         for side in [-1.0, 1.0] {
             let inward = DVec3::AXES[axis] * -side;

@@ -56,6 +56,16 @@ impl Image {
         }
     }
 
+    /// The same image with at most `side` texels along each side: halved as often as that takes.
+    pub fn at_most(mut self, side: u32) -> Self {
+        while self.size().into_iter().max() > Some(side)
+            && let Some(smaller) = self.levels[0].halved(self.is_data)
+        {
+            self.levels = vec![smaller];
+        }
+        self
+    }
+
     /// The same image with all mip levels.
     pub fn with_mipmaps(mut self) -> Self {
         self.levels.truncate(1);

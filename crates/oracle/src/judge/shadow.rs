@@ -39,6 +39,7 @@ pub fn judge_shadow_map(
     let Some(view) = shot.stack.light_view(shot.scene, shot.view) else {
         return Ok(());
     };
+    let view = view.with_grid(view.precision.subpixel_bits, map.geometry.is_relative);
     let casting = shot.stack.shadow_casters();
     let draws = casting.draws(shot.scene, &view)?;
     let shot = Shot::new(shot.scene, &draws, &view, &casting);

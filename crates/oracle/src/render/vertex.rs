@@ -61,7 +61,10 @@ impl<'a> VertexEvaluator<'a> {
             } else {
                 normal_matrix
             },
-            picture_from_world: view.picture_from_world.as_ref().map(round_matrix),
+            picture_from_world: match view.precision.is_relative {
+                true => view.picture_from_world.map(|m| m.to_cols_array_2d()),
+                false => view.picture_from_world.as_ref().map(round_matrix),
+            },
         }
     }
 

@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3, DVec4};
 
 use crate::{
-    params::Params,
+    effects::Words,
     scene::{material::Material, panorama::Panorama, punctual::PlacedLight},
 };
 
@@ -141,6 +141,8 @@ pub struct Transmission {
     pub attenuated: DVec3,
     /// Its alpha is not read: it covers all that lies behind it.
     pub is_opaque: bool,
+    /// Its alpha is how much of that passes at all.
+    pub is_by_alpha: bool,
 }
 
 impl Transmission {
@@ -151,13 +153,15 @@ impl Transmission {
             amount,
             attenuated: amount * DVec3::from(material.attenuation.map(f64::from)),
             is_opaque: !material.is_blended,
+            is_by_alpha: material.transmits_by_alpha,
         })
     }
 
     /// The surface of glass: what passes is tinted by its color, which scatters the rest. Metals let
     /// nothing through.
     pub fn through(&self, mut s: Surface) -> Surface {
-        let through = 1.0 - s.finish.metallic;
+        let alpha = if self.is_by_alpha { s.color.w } else { 1.0 };
+        let through = (1.0 - s.finish.metallic) * alpha;
         let base = s.color.truncate() - s.glow;
         let scattered = base * (1.0 - self.amount * through) + s.glow;
         s.passed = base * self.attenuated * through;
@@ -248,10 +252,7 @@ impl SurfaceInput {
 }
 
 /// The f64 side of an effect on the surface hook.
-pub trait SurfaceEffect: Params {
-    /// The members of the surface that both sides read.
-    const INPUTS: &'static [SurfaceInput];
-
+pub trait SurfaceEffect: Words {
     fn apply(surface: Surface, params: &Self) -> Surface;
 }
 

@@ -175,13 +175,11 @@ impl<'a> Buffers<'a> {
         let there = bytes.len();
         if stated > there {
             let what = bytes.all().ok().and_then(other_file::named);
-            self.notes.fault(|| {
-                let what = what.map_or(String::new(), |what| format!("; {what}"));
-                format!(
-                    "buffer {}: byteLength is {stated}, but the buffer has only {there} bytes{what}",
-                    view.buffer
-                )
-            });
+            let what = what.map_or(String::new(), |what| format!("; {what}"));
+            self.notes.cut_off(format!(
+                "buffer {}: byteLength is {stated}, but the buffer has only {there} bytes{what}",
+                view.buffer
+            ));
         }
         let length = stated.min(there);
         let end = start.checked_add(view.length).filter(|&end| end <= length);
@@ -534,9 +532,18 @@ impl<'a> SceneWriter<'a> {
 
     /// Appends coordinates that the file does not have.
     pub fn append_pairs(&mut self, pairs: &[[f32; 2]]) -> Result<Accessor, LoadError> {
+        self.append_floats(2, pairs.as_flattened())
+    }
+
+    /// Appends so many floats for each vertex.
+    pub fn append_floats(&mut self, each: u32, values: &[f32]) -> Result<Accessor, LoadError> {
         let bytes = &mut self.scene.vertex_bytes;
-        let offset = append(&self.buffers.limits, bytes, bytemuck::cast_slice(pairs))?;
-        Ok(Accessor::packed_f32(offset as usize, 2, pairs.len()))
+        let offset = append(&self.buffers.limits, bytes, bytemuck::cast_slice(values))?;
+        Ok(Accessor::packed_f32(
+            offset as usize,
+            each,
+            values.len() / each as usize,
+        ))
     }
 }
 

@@ -8,6 +8,7 @@ use super::{
     other_file,
     source::{Bytes, Source, reserve},
 };
+use crate::legible::group_digits;
 
 /// The JSON and, of a GLB, the binary chunk.
 ///
@@ -55,10 +56,7 @@ fn split_glb<'a>(
             "GLB version {version} is not supported; export as version 2"
         )));
     }
-    if length != size {
-        notes.fault(|| format!("the GLB header states {length} bytes, but the file has {size}"));
-    }
-    let (mut at, mut json, mut binary) = (12, None, None);
+    let (mut at, mut json, mut binary, mut short) = (12, None, None, None);
     while at + 8 <= size && binary.is_none() {
         let mut head = Vec::new();
         model.append_to(&mut head, at..at + 8)?;
@@ -72,7 +70,7 @@ fn split_glb<'a>(
             if is_json {
                 return Err(LoadError::new(sentence));
             }
-            notes.fault(|| sentence);
+            short = Some(sentence);
             bytes = size - start;
         }
         at = start + bytes;
@@ -96,6 +94,19 @@ fn split_glb<'a>(
     }
     let json =
         json.ok_or_else(|| LoadError::new("the GLB has no chunk of JSON; it is truncated"))?;
+    if length > size && (short.is_some() || binary.is_none()) {
+        let [there, stated] = [size, length].map(group_digits);
+        notes.cut_off(format!(
+            "the file is cut off after {there} of {stated} bytes"
+        ));
+        // What the missing chunk would hold is missing with it.
+        binary = binary.or_else(|| Some(Bytes::Memory(Cow::Borrowed(&[]))));
+    } else if length != size {
+        notes.fault(|| format!("the GLB header states {length} bytes, but the file has {size}"));
+    }
+    if let Some(sentence) = short.filter(|_| !notes.is_cut_off()) {
+        notes.fault(|| sentence);
+    }
     Ok((json, binary))
 }
 
@@ -117,9 +128,15 @@ pub fn text<'a>(json: &'a [u8], notes: &Notes) -> Cow<'a, str> {
         );
         plain = &plain[..plain.len() - padding];
     }
-    let text = String::from_utf8_lossy(plain);
-    if matches!(text, Cow::Owned(_)) {
-        notes.fault(|| "the JSON has bytes that are not UTF-8; their characters are replaced");
+    if let Ok(text) = std::str::from_utf8(plain) {
+        return text.into();
     }
-    text
+    notes.fault(|| "the JSON has bytes that are not UTF-8; their characters are replaced");
+    // By those of their numbers, so that names stay distinct.
+    let mut text = String::with_capacity(plain.len());
+    for chunk in plain.utf8_chunks() {
+        text.push_str(chunk.valid());
+        text.extend(chunk.invalid().iter().copied().map(char::from));
+    }
+    text.into()
 }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::{
-    buffers::{FLOAT, Format, SceneWriter},
+    buffers::{FLOAT, FLOAT_OR_UNORM, Format, SceneWriter},
     checks::check_finite,
     document::{Document, Primitive},
     error::LoadError,
@@ -82,6 +82,56 @@ pub fn morph_targets(
         max_displacement: positions.map_or(0.0, largest),
     };
     Ok(targets.into_iter().map(target).collect())
+}
+
+/// Colors or texture coordinates of a primitive after its morph targets; `accessor` itself where none
+/// moves them. A target that cannot be read moves nothing.
+///
+/// # Errors
+/// There would be too many bytes, or loading was canceled.
+pub fn moved(
+    writer: &mut SceneWriter,
+    about: &Primitive,
+    name: &str,
+    accessor: Accessor,
+    weights: &[f32],
+) -> Result<Accessor, LoadError> {
+    const SIGNED: [Format; 2] = [(ComponentType::I8, true), (ComponentType::I16, true)];
+    let formats = [FLOAT_OR_UNORM, &SIGNED].concat();
+    let mut targets = Vec::new();
+    for (target, weight) in about.targets.iter().zip(weights) {
+        let Some(&index) = target.get(name).filter(|_| *weight != 0.0) else {
+            continue;
+        };
+        match writer.attribute(index, accessor.count, &[2, 3, 4], &formats) {
+            Ok(read) if check_finite(&writer.scene, &read).is_ok() => {
+                targets.push((read, f64::from(*weight)));
+            }
+            Ok(_) => {}
+            Err(error) => drop(error.of_part()?),
+        }
+    }
+    if targets.is_empty() {
+        return Ok(accessor);
+    }
+    let (bytes, is_color) = (&writer.scene.vertex_bytes, name.starts_with("COLOR"));
+    let mut values = Vec::with_capacity((accessor.count * accessor.components) as usize);
+    for vertex in 0..accessor.count {
+        for component in 0..accessor.components {
+            let moved = targets
+                .iter()
+                .filter(|(target, _)| component < target.components)
+                .map(|(target, weight)| target.value(bytes, vertex, component) * weight)
+                .sum::<f64>();
+            let value = accessor.value(bytes, vertex, component) + moved;
+            values.push(if is_color {
+                value.clamp(0.0, 1.0)
+            } else {
+                value
+            } as f32);
+        }
+    }
+    writer.append_floats(accessor.components, &values)
 }
 
 fn displacements(

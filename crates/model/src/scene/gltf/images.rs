@@ -10,6 +10,7 @@ use super::{
     limits::{self, Limits},
     other_file,
 };
+use crate::scene::texture::Image;
 
 /// The format of an image, which its first bytes tell.
 ///
@@ -29,6 +30,22 @@ pub fn format_of(bytes: &[u8]) -> Result<ImageFormat, LoadError> {
             )))
         }
     }
+}
+
+/// An image with at most as many texels as are drawn, and what is told where it had more.
+pub fn fitted(image: Image) -> (Image, Option<String>) {
+    let most = limits::IMAGE_SIDE;
+    let [width, height] = image.size();
+    if width.max(height) <= most {
+        return (image, None);
+    }
+    let image = image.at_most(most);
+    let [w, h] = image.size();
+    let note = format!(
+        "{} has {width} x {height} texels; it is drawn with {w} x {h}, at most {most} along each side",
+        image.name
+    );
+    (image, Some(note))
 }
 
 /// Decodes an image, besides others of `taken` bytes. Its header is checked against the limits
@@ -53,7 +70,7 @@ pub fn decode(
     reader.limits(most);
     let decoder = reader.into_decoder().map_err(failed)?;
     let (width, height) = decoder.dimensions();
-    let side = limits::IMAGE_SIDE;
+    let side = limits::LARGEST_IMAGE_SIDE;
     if width == 0 || height == 0 || width.max(height) > side {
         return Err(LoadError::new(format!(
             "it has {width} x {height} texels; allowed: 1 to {side} along each side"

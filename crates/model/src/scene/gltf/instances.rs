@@ -3,7 +3,7 @@
 use glam::{DMat3, DMat4};
 
 use super::{
-    deformation,
+    deformation, document,
     error::LoadError,
     instancing::{self, INSTANCING},
     meshes::Loader,
@@ -12,7 +12,7 @@ use super::{
 use crate::scene::{
     material::Material,
     model::{Instance, Primitive},
-    rig::Rig,
+    rig::{Property, Rig},
 };
 
 /// How many times as thick as in the space of its mesh a node makes the volume of a material, in
@@ -60,6 +60,7 @@ impl Loader<'_> {
             } else {
                 thickness
             };
+            let primitive = self.morphed(primitive, node, rig)?;
             shown.push((self.scaled(primitive, thickness), skin));
         }
         let placements = self.placements(node, shown.len())?;
@@ -102,6 +103,63 @@ impl Loader<'_> {
             instances.extend(shown.iter().map(instance));
         }
         Ok(())
+    }
+
+    /// The primitive with the colors and texture coordinates that the weights of a node at rest make:
+    /// clips do not move these.
+    ///
+    /// # Errors
+    /// There would be too many bytes, or loading was canceled.
+    fn morphed(&mut self, primitive: usize, node: usize, rig: &Rig) -> Result<usize, LoadError> {
+        let about = self.sources[primitive];
+        let is_color = |name: &String| name == "COLOR_0" || name.starts_with("TEXCOORD_");
+        let mut names = about.targets.iter().flat_map(|target| target.keys());
+        let rig_node = rig.nodes.get(self.tree.rig_index[node]);
+        let Some(weights) = rig_node
+            .map(|node| &node.weights)
+            .filter(|_| names.any(is_color))
+        else {
+            return Ok(primitive);
+        };
+        let is_animated = |(_, channel): &(usize, Result<document::Channel, String>)| {
+            let of_node = |channel: &document::Channel| {
+                channel.node == node && channel.property == Property::Weights
+            };
+            channel.as_ref().is_ok_and(of_node)
+        };
+        let mut channels = self.document.clips.iter().flat_map(|clip| &clip.channels);
+        if channels.any(is_animated) {
+            self.buffers.notes.add(|| {
+                format!(
+                    "{}: clips do not move its morphed colors and texture coordinates, which stay as at rest",
+                    node_name(self.document, node)
+                )
+            });
+        }
+        let key = (
+            primitive,
+            weights.iter().map(|weight| weight.to_bits()).collect(),
+        );
+        if let Some(&known) = self.morphed.get(&key) {
+            return Ok(known);
+        }
+        let mut made = self.writer.scene.primitives[primitive].clone();
+        let mut accessors = vec![("COLOR_0".to_owned(), made.colors.as_mut())];
+        let textures = self.writer.scene.materials[made.material].textures();
+        for (texcoords, texture) in made.texcoords.iter_mut().zip(textures) {
+            let set = texture.map_or(0, |texture| texture.set);
+            accessors.push((format!("TEXCOORD_{set}"), texcoords.as_mut()));
+        }
+        for (name, accessor) in accessors {
+            if let Some(accessor) = accessor {
+                *accessor = deformation::moved(&mut self.writer, about, &name, *accessor, weights)?;
+            }
+        }
+        self.writer.scene.primitives.push(made);
+        self.sources.push(about);
+        let made = self.writer.scene.primitives.len() - 1;
+        self.morphed.insert(key, made);
+        Ok(made)
     }
 
     /// The primitive with its material `thickness` times as thick, where that shows.

@@ -24,6 +24,9 @@ pub const CHANNELS: usize = 262_144;
 pub const KEY_NUMBERS: usize = 16_000_000;
 /// Width and height of an image in texels.
 pub const IMAGE_SIDE: u32 = 8192;
+
+/// Largest side of an image that is read, and halved until it has [`IMAGE_SIDE`].
+pub const LARGEST_IMAGE_SIDE: u32 = 4 * IMAGE_SIDE;
 /// Messages to the user.
 pub const NOTES: usize = 32;
 

@@ -107,6 +107,7 @@ fn read_model(
     read: &mut ReadFile,
     notes: &Notes,
 ) -> Result<Scene, LoadError> {
+    let is_cut_off = notes.is_cut_off();
     let tree = Tree::walk(document, notes);
     let mut buffers = Buffers::read(document, binary, (file, budget), read, notes)?;
     let (materials, images) = materials::read(&mut buffers, &tree.shown, read)?;
@@ -138,7 +139,8 @@ fn read_model(
     let mut scene = writer.scene;
     if scene.instances.is_empty() {
         // Nothing is left because of what was left out.
-        if let Some(reason) = first_lost.or_else(|| notes.first_fault()) {
+        let cut_off = notes.first_fault().filter(|_| is_cut_off);
+        if let Some(reason) = cut_off.or(first_lost).or_else(|| notes.first_fault()) {
             return Err(LoadError::new(reason));
         }
         notes.add(|| "nothing to draw: the scene shows no triangles");
@@ -200,10 +202,5 @@ fn omissions(document: &Document) -> impl Iterator<Item = String> {
         .iter()
         .any(|material| material.has_more)
         .then(|| "textures of specular reflection and of glossiness are not drawn".into());
-    let more = document
-        .materials
-        .iter()
-        .any(|material| material.has_more_transmission)
-        .then(|| "textures of transmission and of thickness are not drawn".into());
-    notes.chain(textures).chain(more)
+    notes.chain(textures)
 }

@@ -12,6 +12,7 @@ use super::{
     notes::Notes,
     uri,
 };
+use crate::math::{linear_light, srgb};
 use crate::scene::{
     material::{Material, TEXTURE_SLOTS, TextureSlot},
     texture::{Image, MipFilter, Texture},
@@ -73,7 +74,8 @@ pub fn read(
         materials.push(match used.contains(&index) {
             true => {
                 let name = called("material", index, about.name.as_deref());
-                reader.material(plain, about, &name)?
+                let material = reader.material(plain, about, &name)?;
+                reader.passing(material, about, &name)?
             }
             false => plain,
         });
@@ -128,6 +130,94 @@ impl Reader<'_, '_, '_> {
             normal_texture: normal,
             alpha_cutoff: alpha_cutoff(about, base.is_some()),
             ..plain
+        })
+    }
+
+    /// `material` with its textures of transmission and thickness in those of its color, whose alpha an
+    /// opaque material does not need otherwise.
+    fn passing(
+        &mut self,
+        material: Material,
+        about: &document::Material,
+        name: &str,
+    ) -> Result<Material, LoadError> {
+        const KEYS: [&str; 2] = ["transmissionTexture", "thicknessTexture"];
+        let mut given = [None, None];
+        if !material.transmits() || about.passing.iter().all(Option::is_none) {
+            return Ok(material);
+        }
+        for ((given, about), key) in given.iter_mut().zip(&about.passing).zip(KEYS) {
+            if let Some(about) = about {
+                *given = self.texture(about, true, format_args!("{name}: {key}"))?;
+            }
+        }
+        let all = [material.base_texture, given[0], given[1]];
+        let Some(lead) = all.into_iter().flatten().next() else {
+            return Ok(material);
+        };
+        let place = |texture: &Texture| (texture.set, texture.image_from_texcoord, texture.wrap);
+        let is_together = all
+            .iter()
+            .flatten()
+            .all(|texture| place(texture) == place(&lead));
+        let images =
+            all.map(|texture| texture.map(|texture| &self.images[texture.image].levels[0]));
+        let size = [0, 1].map(|axis| {
+            let sides = images.iter().flatten().map(|level| level.size[axis]);
+            sides.max().unwrap_or(1)
+        });
+        let bytes = 4 * u64::from(size[0]) * u64::from(size[1]);
+        let has_room = self.bytes + bytes <= self.buffers.image_limits.total_bytes;
+        if !is_together || !has_room || material.is_blended || material.alpha_cutoff.is_some() {
+            self.notes.add(|| {
+                format!(
+                    "{name}: its textures of transmission and thickness are not drawn: they are only with the coordinates of those of its color, in an opaque material"
+                )
+            });
+            return Ok(material);
+        }
+        let texel = |image: usize, x: u32, y: u32| {
+            images[image].map(|level| {
+                let [x, y] = [(x, 0), (y, 1)].map(|(at, axis)| {
+                    (u64::from(at) * u64::from(level.size[axis]) / u64::from(size[axis])) as usize
+                });
+                level.texels[y * level.size[0] as usize + x]
+            })
+        };
+        let tint = |byte: u8, channel: usize, part: [f64; 2]| {
+            let left = libm::pow(material.attenuation[channel].into(), part[1]);
+            // What scatters its color does not pass the thickness.
+            let kept = 1.0 + part[0] * f64::from(material.transmission) * (left - 1.0);
+            (srgb(linear_light(f64::from(byte) / 255.0) * kept) * 255.0).round() as u8
+        };
+        let mut texels = Vec::with_capacity(bytes as usize / 4);
+        for at in 0..size[0] * size[1] {
+            let (x, y) = (at % size[0], at / size[0]);
+            let passed = texel(1, x, y).map_or(255, |texel| texel[0]);
+            let mut color = texel(0, x, y).unwrap_or([255; 4]);
+            if let Some(thickness) = texel(2, x, y) {
+                let part = [passed, thickness[1]].map(|byte| f64::from(byte) / 255.0);
+                (0..3).for_each(|channel| color[channel] = tint(color[channel], channel, part));
+            }
+            color[3] = passed;
+            texels.push(color);
+        }
+        let attenuation = if given[1].is_some() {
+            [1.0; 3]
+        } else {
+            material.attenuation
+        };
+        self.bytes += bytes;
+        self.images
+            .push(Image::new(name, size, texels).with_mipmaps());
+        Ok(Material {
+            base_texture: Some(Texture {
+                image: self.images.len() - 1,
+                ..lead
+            }),
+            transmits_by_alpha: true,
+            attenuation,
+            ..material
         })
     }
 
@@ -189,15 +279,14 @@ impl Reader<'_, '_, '_> {
         let (name, image) = match &self.buffers.document.images[index] {
             Ok(about) => {
                 let name = called("image", index, about.name.as_deref());
-                let image = self.decoded(about, &name);
+                let image = self.decoded(about, &name, is_data);
                 (name, image)
             }
             Err(reason) => (format!("image {index}"), Err(LoadError::new(reason))),
         };
         let in_scene = match image {
             Ok(image) => {
-                self.images
-                    .push(if is_data { image.of_data() } else { image });
+                self.images.push(image);
                 Some(self.images.len() - 1)
             }
             Err(error) => {
@@ -210,7 +299,12 @@ impl Reader<'_, '_, '_> {
         Ok(in_scene)
     }
 
-    fn decoded(&mut self, about: &document::Image, name: &str) -> Result<Image, LoadError> {
+    fn decoded(
+        &mut self,
+        about: &document::Image,
+        name: &str,
+        is_data: bool,
+    ) -> Result<Image, LoadError> {
         let bytes = match &about.from {
             ImageSource::View(view) => self.buffers.view(*view)?.to_vec(),
             ImageSource::Uri(uri) => {
@@ -236,8 +330,11 @@ impl Reader<'_, '_, '_> {
         }
         let (size, texels) =
             images::decode(&bytes, format, &self.buffers.image_limits, self.bytes)?;
-        self.bytes += 4 * texels.len() as u64;
-        Ok(Image::new(name, size, texels))
+        let image = Image::new(name, size, texels);
+        let (image, note) = images::fitted(if is_data { image.of_data() } else { image });
+        self.notes.extend(note);
+        self.bytes += image.bytes();
+        Ok(image)
     }
 }
 

@@ -55,6 +55,9 @@ pub struct Loader<'a> {
     /// Primitives whose materials are as thick as nodes scale them, each with what it is made from
     /// and [`Thickness`](super::instances::Thickness).
     pub(super) scaled: HashMap<(usize, Thickness), usize>,
+    /// Primitives whose colors or texture coordinates the weights of nodes move, each with what it is
+    /// made from and the bits of these weights.
+    pub(super) morphed: HashMap<(usize, Vec<u32>), usize>,
     vertices: u64,
     triangles: u64,
 }
@@ -75,6 +78,7 @@ impl<'a> Loader<'a> {
             meshes: HashMap::new(),
             variants: HashMap::new(),
             scaled: HashMap::new(),
+            morphed: HashMap::new(),
             vertices: 0,
             triangles: 0,
         }

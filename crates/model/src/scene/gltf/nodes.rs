@@ -24,8 +24,11 @@ use crate::scene::{
 pub struct Tree {
     /// World transform of each node in the rest pose.
     pub world_from_node: Vec<DMat4>,
-    /// Nodes of the shown scene (all, where the file has no scene), parents before children.
+    /// Nodes of the shown scene (all, where the file has no scene) that are not hidden, parents
+    /// before children.
     pub shown: Vec<usize>,
+    /// The same with those that are hidden.
+    present: Vec<usize>,
     /// The parent of each node.
     parents: Vec<Option<usize>>,
     /// The transform of each node relative to its parent.
@@ -52,8 +55,10 @@ impl Tree {
         let roots = (0..nodes.len()).filter(|&node| parents[node].is_none());
         let order = visit(&children, roots);
         let mut world_from_node = vec![DMat4::IDENTITY; nodes.len()];
-        let mut is_lost = vec![false; nodes.len()];
+        let [mut is_lost, mut is_hidden] = [(); 2].map(|()| vec![false; nodes.len()]);
         for &node in &order {
+            is_hidden[node] =
+                nodes[node].is_hidden || parents[node].is_some_and(|parent| is_hidden[parent]);
             let parent = parents[node].map_or(DMat4::IDENTITY, |parent| world_from_node[parent]);
             let world = parent * locals[node].matrix();
             if world.is_finite() {
@@ -73,14 +78,16 @@ impl Tree {
         for (place, &node) in order.iter().enumerate() {
             rig_index[node] = place;
         }
-        let mut shown = match &document.scene {
+        let mut present = match &document.scene {
             None => order.clone(),
             Some(scene) => visit(&children, tops(document, scene, &parents, &order, notes)),
         };
-        shown.retain(|&node| !is_lost[node]);
+        present.retain(|&node| !is_lost[node]);
+        let shown = present.iter().copied().filter(|&node| !is_hidden[node]);
         Self {
             world_from_node,
-            shown,
+            shown: shown.collect(),
+            present,
             parents,
             locals,
             order,
@@ -147,7 +154,7 @@ impl Tree {
         notes: &Notes,
     ) -> Vec<SceneCamera> {
         let mut cameras = Vec::new();
-        for &node in &self.shown {
+        for &node in &self.present {
             let Some(index) = document.nodes[node].camera else {
                 continue;
             };
@@ -365,14 +372,12 @@ fn is_crooked(node: &document::Node) -> bool {
 /// The transform of a node relative to its parent.
 fn local(node: &document::Node) -> LocalTransform {
     if let Some(matrix) = node.matrix {
-        return LocalTransform::Matrix(DMat4::from_cols_array(&matrix.map(f64::from)));
+        return LocalTransform::Matrix(DMat4::from_cols_array(&matrix));
     }
-    let vector =
-        |v: Option<[f32; 3]>, default: DVec3| v.map_or(default, |v| v.map(f64::from).into());
     LocalTransform::Trs(Trs {
-        translation: vector(node.translation, DVec3::ZERO),
+        translation: node.translation.map_or(DVec3::ZERO, DVec3::from),
         rotation: unit(node.rotation.unwrap_or([0.0, 0.0, 0.0, 1.0]).map(f64::from)),
-        scale: vector(node.scale, DVec3::ONE),
+        scale: (node.scale).map_or(DVec3::ONE, |scale| scale.map(f64::from).into()),
     })
 }
 

@@ -9,6 +9,7 @@ use base64::{
 };
 
 use super::error::{LoadError, ReadFile, quoted};
+use crate::legible::text_of;
 
 /// Real files often omit the padding, or leave bits in the last character.
 const BASE64: GeneralPurpose = GeneralPurpose::new(
@@ -66,9 +67,8 @@ fn decode(data: &str) -> Result<Vec<u8>, LoadError> {
 /// A path inside the model's folder, after percent-decoding.
 pub fn relative(uri: &str) -> Result<PathBuf, LoadError> {
     let refused = |reason: &str| LoadError::new(format!("URI {} {reason}", quoted(uri)));
-    let decoded = percent_decoded(uri)
-        .and_then(|bytes| String::from_utf8(bytes).ok())
-        .ok_or_else(|| refused("is not percent-encoded UTF-8"))?;
+    let decoded = percent_decoded(uri).ok_or_else(|| refused("is not percent-encoded UTF-8"))?;
+    let decoded = text_of(&decoded);
     inside(&decoded).map_err(refused)
 }
 

@@ -39,34 +39,67 @@ impl<'a, 'b> Beside<'a, 'b> {
         }
     }
 
-    /// The bytes of a file that is named in `folder`, which lies below that of the model. A name
-    /// that leads elsewhere, as those of other machines do, stands for the file of that name in
-    /// `folder`.
+    /// The bytes of a file that is named in `folder`, which lies below that of the model, or else in
+    /// that of the model. A name that leads elsewhere, as those of other machines do, stands for the
+    /// file of that name there. `\ ` may stand for a space.
     ///
     /// # Errors
     /// There is no such file, or it is too large.
     pub fn file(&mut self, folder: &Path, name: &str) -> Result<Vec<u8>, LoadError> {
-        let path = path(folder, name)
-            .map_err(|reason| LoadError::new(reason).after(format_args!("{} ", quoted(name))))?;
         let most = self.left.min(self.limits.file_bytes);
-        let bytes = (self.read)(&path, most).map_err(|error| error.within(quoted(name)))?;
-        self.left = self.left.saturating_sub(bytes.len() as u64);
-        Ok(bytes)
+        let mut failed = None;
+        let plain = name.replace("\\ ", " ");
+        for name in [name, &plain] {
+            for folder in [folder, Path::new("")] {
+                let read = match path(folder, name) {
+                    Ok(path) => {
+                        (self.read)(&path, most).map_err(|error| error.within(quoted(name)))
+                    }
+                    Err(reason) => {
+                        Err(LoadError::new(reason).after(format_args!("{} ", quoted(name))))
+                    }
+                };
+                match read {
+                    Ok(bytes) => {
+                        self.left = self.left.saturating_sub(bytes.len() as u64);
+                        return Ok(bytes);
+                    }
+                    Err(error) => drop(failed.get_or_insert(error)),
+                }
+                if folder == Path::new("") {
+                    break;
+                }
+            }
+            if name == plain {
+                break;
+            }
+        }
+        Err(failed.unwrap_or_else(|| LoadError::new("it has no name")))
     }
 
-    /// The texture that shows the image `name`, which messages call `place`; none, with a message,
-    /// if it cannot be read.
+    /// The texture that shows the first of the images `names` that can be read, which messages call
+    /// `place`; none, with a message about the first, if none can.
     pub fn texture(
         &mut self,
         folder: &Path,
-        name: &str,
+        names: &[String],
         place: &str,
     ) -> Result<Option<Texture>, LoadError> {
-        let key = path(folder, name).unwrap_or_default();
+        let Some((first, others)) = names.split_first() else {
+            return Ok(None);
+        };
+        let key = path(folder, first).unwrap_or_default();
         if let Some(&image) = self.known.get(&key) {
             return Ok(image.map(Texture::plain));
         }
-        let image = match self.image(folder, name) {
+        let mut found = self.image(folder, first);
+        for other in others {
+            if found.is_ok() {
+                break;
+            }
+            found = self.image(folder, other).or(found);
+        }
+        let image = match found {
             Ok(image) => {
                 self.images.push(image.with_mipmaps());
                 Some(self.images.len() - 1)
@@ -86,8 +119,11 @@ impl<'a, 'b> Beside<'a, 'b> {
         let decoded = images::format_of(&bytes)
             .and_then(|format| images::decode(&bytes, format, &self.limits, self.decoded));
         let (size, texels) = decoded.map_err(|error| error.within(quoted(name)))?;
-        self.decoded += 4 * texels.len() as u64;
-        Ok(Image::new(&format!("image {}", quoted(name)), size, texels))
+        let image = Image::new(&format!("image {}", quoted(name)), size, texels);
+        let (image, note) = images::fitted(image);
+        self.notes.extend(note);
+        self.decoded += image.bytes();
+        Ok(image)
     }
 }
 

@@ -2,13 +2,13 @@
 
 use std::collections::HashMap;
 
-use glam::DVec3;
+use glam::{DMat4, DVec3};
 
 use super::{findings::Findings, polygons};
 use crate::{
     scene::{
         accessor::{Accessor, ComponentType},
-        bounds::Bounds,
+        bounds::{Bounds, MAX_MAGNITUDE},
         gltf::{
             LoadError,
             buffers::append,
@@ -60,8 +60,8 @@ impl Room {
 pub struct Vertex {
     /// Among the vertices of its part.
     pub key: [u32; 4],
-    /// It is finite.
-    pub position: [f32; 3],
+    /// It is finite, also in an f32.
+    pub position: [f64; 3],
     pub normal: [f32; 3],
     /// Linear, in units of 1/65535.
     pub color: [u16; 4],
@@ -71,7 +71,7 @@ pub struct Vertex {
 
 impl Vertex {
     /// A white vertex at a place.
-    pub fn at(key: [u32; 4], position: [f32; 3]) -> Self {
+    pub fn at(key: [u32; 4], position: [f64; 3]) -> Self {
         Self {
             key,
             position,
@@ -98,7 +98,7 @@ pub struct Kind {
 /// Faces of one kind.
 pub struct Part {
     kind: Kind,
-    positions: Vec<[f32; 3]>,
+    positions: Vec<[f64; 3]>,
     normals: Vec<[f32; 3]>,
     colors: Vec<[u16; 4]>,
     texcoords: Vec<[f32; 2]>,
@@ -214,10 +214,8 @@ impl Builder {
             }
         }
         self.corners.clear();
-        self.corners.extend(
-            face.iter()
-                .map(|corner| DVec3::from(corner.position.map(f64::from))),
-        );
+        self.corners
+            .extend(face.iter().map(|corner| DVec3::from(corner.position)));
         self.cut.clear();
         if !polygons::cut(&self.corners, &mut self.cut)? {
             findings.fault("it is left out", || {
@@ -306,9 +304,12 @@ impl Builder {
             scene.materials.push(plain_material());
         }
         let mut plain = HashMap::new();
+        let center = far_center(parts.iter());
         for part in parts {
             if !part.indices.is_empty() {
-                add(part, &limits, &mut scene, &mut plain, &notes)?;
+                let own = || far_center(std::iter::once(&part));
+                let center = center.or_else(own).unwrap_or_default();
+                add(part, center, &limits, &mut scene, &mut plain, &notes)?;
             }
         }
         if scene.instances.is_empty() {
@@ -334,9 +335,27 @@ pub fn plain_material() -> Material {
     }
 }
 
-/// Adds a part to a scene. `plain` are the materials without their textures.
+/// The middle of parts that lie far from the origin for their size: positions relative to it keep in
+/// an f32 what the file says. It is rounded to a power of two of about their size, so that little of
+/// a decimal is lost where it is subtracted.
+fn far_center<'a>(parts: impl Iterator<Item = &'a Part>) -> Option<DVec3> {
+    // Nearer, an f32 errs by a millionth of the size.
+    const FAR: f64 = 8.0;
+    let mut bounds = Bounds::EMPTY;
+    let positions = parts.flat_map(|part| &part.positions);
+    positions.for_each(|&position| bounds.include(DVec3::from(position)));
+    let size = (bounds.max - bounds.min).max_element();
+    let (middle, is_sized) = (bounds.center(), size > 0.0 && size.is_finite());
+    let distance = middle.abs().max_element();
+    let step = libm::exp2(libm::log2(size).floor());
+    (is_sized && distance > FAR * size && distance < MAX_MAGNITUDE)
+        .then(|| (middle / step).round() * step)
+}
+
+/// Adds a part to a scene, with positions relative to `center`. `plain` are the materials without their textures.
 fn add(
     part: Part,
+    center: DVec3,
     limits: &Limits,
     scene: &mut Scene,
     plain: &mut HashMap<usize, usize>,
@@ -352,6 +371,10 @@ fn add(
         known,
     } = part;
     drop(known);
+    let positions: Vec<[f32; 3]> = positions
+        .into_iter()
+        .map(|position| (DVec3::from(position) - center).as_vec3().to_array())
+        .collect();
     let vertices = positions.len();
     let mut stored = |bytes: &[u8]| append(limits, &mut scene.vertex_bytes, bytes);
     let positions_at = stored(bytemuck::cast_slice(&positions))? as usize;
@@ -429,7 +452,7 @@ fn add(
     )?;
     let instance = Instance {
         named_node: kind.node,
-        ..Instance::fixed(scene.primitives.len(), glam::DMat4::IDENTITY)
+        ..Instance::fixed(scene.primitives.len(), DMat4::from_translation(center))
     };
     scene.instances.push(instance);
     scene.primitives.push(primitive);

@@ -11,6 +11,7 @@ use super::{
     findings::Findings,
     stream::{Stream, number, numbers, split},
 };
+use crate::legible::text_of;
 use crate::scene::{
     gltf::{
         LoadError,
@@ -24,6 +25,9 @@ use crate::scene::{
 
 /// Most material files of a line.
 const MOST_FILES: usize = 64;
+
+/// Most options of a texture, and words that may be values of one that nobody knows.
+const MOST_OPTIONS: usize = 16;
 
 /// Options of textures, with the most values that follow them.
 const OPTIONS: &[(&str, usize)] = &[
@@ -48,6 +52,16 @@ const OTHER_MAPS: &[&str] = &[
     "map_pm", "map_ps", "map_norm",
 ];
 
+/// A texture as a line describes it.
+struct Map {
+    /// Names that its file may have, the likeliest first: what follows an option that nobody knows
+    /// may begin with its values.
+    names: Vec<String>,
+    /// Texture coordinates are multiplied by the scale and moved by the offset, with v up.
+    scale: [f32; 2],
+    offset: [f32; 2],
+}
+
 /// A material as its file describes it.
 #[derive(Default)]
 struct Description {
@@ -56,9 +70,9 @@ struct Description {
     emission: Option<[f32; 3]>,
     /// Below 1 light passes through it.
     opacity: Option<f32>,
-    base_map: Option<String>,
-    emission_map: Option<String>,
-    opacity_map: Option<String>,
+    base_map: Option<Map>,
+    emission_map: Option<Map>,
+    opacity_map: Option<Map>,
     /// The folder of its file.
     folder: PathBuf,
 }
@@ -117,11 +131,18 @@ fn files(line: &str, beside: &mut Beside) -> Result<Files, LoadError> {
         })
     };
     let whole = read(line)?;
-    let names: Vec<&str> = line.split_ascii_whitespace().collect();
+    // A space behind a backslash is part of a name.
+    const SPACE: &str = "\0";
+    let joined = line.replace("\\ ", SPACE);
+    let names: Vec<&str> = joined.split_ascii_whitespace().collect();
     if whole.is_ok() || names.len() < 2 {
         return Ok(vec![(line.to_owned(), whole)]);
     }
-    let each = |name: &&str| Ok((name.to_string(), read(name)?));
+    let each = |name: &&str| {
+        let name = name.replace(SPACE, " ");
+        let file = read(&name)?;
+        Ok((name, file))
+    };
     names.iter().take(MOST_FILES).map(each).collect()
 }
 
@@ -144,7 +165,7 @@ fn descriptions(
     let folder = path.parent().unwrap_or(Path::new(""));
     let (mut stream, mut line, mut is_wanted) = (Stream::new(&bytes), Vec::new(), false);
     while stream.line(&mut line)? {
-        let text = String::from_utf8_lossy(&line);
+        let text = text_of(&line);
         let (keyword, rest) = split(&text);
         if keyword == "newmtl" {
             is_wanted = wanted.remove(rest);
@@ -181,10 +202,10 @@ fn descriptions(
             "kd" => color(&mut about.color),
             "ke" => color(&mut about.emission),
             "d" => about.opacity = rest.split_ascii_whitespace().find_map(number),
-            "tr" => about.opacity = number(rest).map(|through| 1.0 - through),
-            "map_kd" => about.base_map = image_name(rest),
-            "map_ke" => about.emission_map = image_name(rest),
-            "map_d" | "map_tr" => about.opacity_map = image_name(rest),
+            "tr" => about.opacity = number(rest).map(|through: f32| 1.0 - through),
+            "map_kd" => about.base_map = Map::read(rest),
+            "map_ke" => about.emission_map = Map::read(rest),
+            "map_d" | "map_tr" => about.opacity_map = Map::read(rest),
             other if OTHER_MAPS.contains(&other) => {
                 left_out.insert(other.to_owned());
             }
@@ -194,26 +215,69 @@ fn descriptions(
     Ok(found)
 }
 
-/// The file of a texture, behind its options.
-fn image_name(rest: &str) -> Option<String> {
-    let mut rest = rest;
-    loop {
-        let (word, behind) = split(rest);
-        let Some((_, values)) = OPTIONS.iter().find(|(name, _)| *name == word) else {
-            break;
+impl Map {
+    /// The texture that a line names behind its options.
+    fn read(line: &str) -> Option<Self> {
+        let mut map = Self {
+            names: Vec::new(),
+            scale: [1.0; 2],
+            offset: [0.0; 2],
         };
-        rest = behind;
-        for value in 0..*values {
+        let (mut rest, mut is_known) = (line, true);
+        for _ in 0..MOST_OPTIONS {
             let (word, behind) = split(rest);
-            // Of several values all but the first may be missing.
-            if value > 0 && number(word).is_none() {
+            if let Some((name, values)) = OPTIONS.iter().find(|(name, _)| *name == word) {
+                rest = map.option(name, *values, behind);
+            } else if word.len() > 1 && word.starts_with('-') && !behind.is_empty() {
+                // Its values are unknown too: up to the next option, if there is one.
+                let next = OPTIONS
+                    .iter()
+                    .filter_map(|(name, _)| behind.find(&format!(" {name} ")));
+                rest = behind[next.min().unwrap_or(0)..].trim_ascii_start();
+                is_known = false;
+            } else {
                 break;
+            }
+        }
+        // Messages name the shortest, and the line itself is the least likely.
+        let words: Vec<&str> = rest.rsplitn(MOST_OPTIONS, ' ').collect();
+        let ends = (1..words.len()).map(|count| {
+            let length: usize = words[..count].iter().map(|word| word.len() + 1).sum();
+            &rest[rest.len() + 1 - length..]
+        });
+        let values = ends.filter(|_| !is_known);
+        let names = values.chain([rest, line].into_iter().take(if is_known { 1 } else { 2 }));
+        map.names = names
+            .map(|name| name.trim_matches('"').to_owned())
+            .filter(|name| !name.is_empty())
+            .collect();
+        (!map.names.is_empty()).then_some(map)
+    }
+
+    /// Takes the values of an option; returns what is behind them.
+    fn option<'a>(&mut self, name: &str, most: usize, mut rest: &'a str) -> &'a str {
+        for value in 0..most {
+            let (word, behind) = split(rest);
+            let given = number::<f32>(word);
+            // Of several values all but the first may be missing.
+            if value > 0 && given.is_none() {
+                break;
+            }
+            match (name, given) {
+                ("-s", Some(given)) if value < 2 => self.scale[value] = given,
+                ("-o", Some(given)) if value < 2 => self.offset[value] = given,
+                _ => {}
             }
             rest = behind;
         }
+        rest
     }
-    let name = rest.trim_matches('"');
-    (!name.is_empty()).then(|| name.to_owned())
+
+    /// The map from texture coordinates whose v points down, as they are stored.
+    fn image_from_texcoord(&self) -> [[f32; 3]; 2] {
+        let ([wide, high], [right, up]) = (self.scale, self.offset);
+        [[wide, 0.0, right], [0.0, high, 1.0 - high - up]]
+    }
 }
 
 impl Description {
@@ -223,9 +287,16 @@ impl Description {
         findings: &mut Findings,
     ) -> Result<Material, LoadError> {
         let place = format!("material {}", quoted(&self.name));
-        let mut texture = |map: &Option<String>, key: &str| match map {
-            Some(name) => beside.texture(&self.folder, name, &format!("{place}: {key}")),
-            None => Ok(None),
+        let mut texture = |map: &Option<Map>, key: &str| {
+            let Some(map) = map else {
+                return Ok::<_, LoadError>(None);
+            };
+            let place = format!("{place}: {key}");
+            let found = beside.texture(&self.folder, &map.names, &place)?;
+            Ok(found.map(|plain| Texture {
+                image_from_texcoord: map.image_from_texcoord(),
+                ..plain
+            }))
         };
         let base_texture = texture(&self.base_map, "map_Kd")?;
         let emission_texture = texture(&self.emission_map, "map_Ke")?;
@@ -236,7 +307,11 @@ impl Description {
         // A map that is its own mask.
         let masking = base_texture
             .as_ref()
-            .filter(|_| self.opacity_map == self.base_map)
+            .filter(|_| {
+                let [opacity, base] = [&self.opacity_map, &self.base_map]
+                    .map(|map| map.as_ref().map(|map| &map.names));
+                opacity == base
+            })
             .filter(has_holes);
         let is_translucent = self.opacity.is_some_and(|opacity| opacity < 1.0);
         if masking.is_some() {
@@ -248,7 +323,10 @@ impl Description {
             });
         }
         let alpha_cutoff = masking.map(|_| 0.5);
-        let [r, g, b] = colors::linear(self.color.unwrap_or([1.0; 3])).map(|v| v.min(1.0));
+        // Writers leave black beside a map, which all viewers show.
+        let is_left = base_texture.is_some() && self.color == Some([0.0; 3]);
+        let color = self.color.filter(|_| !is_left).unwrap_or([1.0; 3]);
+        let [r, g, b] = colors::linear(color).map(|v| v.min(1.0));
         // A map alone glows as it is.
         let emission = match (self.emission, &emission_texture) {
             (None | Some([0.0, 0.0, 0.0]), Some(_)) => [1.0; 3],

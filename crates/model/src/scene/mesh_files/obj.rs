@@ -13,6 +13,7 @@ use super::{
     stream::{Stream, numbers, split},
 };
 use crate::{
+    legible::text_of,
     scene::{
         gltf::{
             LoadError, ReadFile, Source, checks,
@@ -129,7 +130,7 @@ fn next_line(stream: &mut Stream, line: &mut Vec<u8>) -> Result<bool, LoadError>
     let is_there = stream.line(line)?;
     let mut more = Vec::new();
     // Comments end with the folders of other machines.
-    while line.ends_with(b"\\") && !line.trim_ascii_start().starts_with(b"#") {
+    while continues(line) && !line.trim_ascii_start().starts_with(b"#") {
         line.pop();
         line.push(b' ');
         stream.line(&mut more)?;
@@ -138,11 +139,23 @@ fn next_line(stream: &mut Stream, line: &mut Vec<u8>) -> Result<bool, LoadError>
     Ok(is_there)
 }
 
+/// Does the next line continue it? A backslash may be the second byte of a character that is not
+/// UTF-8.
+fn continues(line: &[u8]) -> bool {
+    let Some((b'\\', before)) = line.split_last() else {
+        return false;
+    };
+    let tail = &before[before.len().saturating_sub(64)..];
+    let run = tail.iter().rev().take_while(|&&byte| byte > 0x80).count();
+    let is_second = run % 2 == 1 && std::str::from_utf8(&tail[tail.len() - run..]).is_err();
+    !is_second
+}
+
 /// What faces refer to.
 #[derive(Default)]
 struct Lists {
     /// Not finite where the file has no three numbers.
-    positions: Vec<[f32; 3]>,
+    positions: Vec<[f64; 3]>,
     /// As many as positions, or none.
     colors: Vec<[u16; 4]>,
     texcoords: Vec<[f32; 2]>,
@@ -162,7 +175,7 @@ impl Lists {
         let (mut stream, mut line) = (Stream::new(model), Vec::new());
         let mut lists = Self::default();
         while next_line(&mut stream, &mut line)? {
-            let text = String::from_utf8_lossy(&line);
+            let text = text_of(&line);
             let (keyword, rest) = split(&text);
             let tokens = rest.split_ascii_whitespace();
             let mut wrong = |remedy: &'static str| {
@@ -173,7 +186,7 @@ impl Lists {
             };
             match keyword {
                 "v" => {
-                    room.take(size_of::<[f32; 3]>())?;
+                    room.take(size_of::<[f64; 3]>())?;
                     lists.position(tokens, room, || wrong("faces with it are left out"))?;
                 }
                 "vt" => {
@@ -225,7 +238,7 @@ impl Lists {
             room.take(self.positions.len() * size_of::<[u16; 4]>())?;
             self.colors.resize(self.positions.len(), [u16::MAX; 4]);
         }
-        self.positions.push(position.unwrap_or([f32::NAN; 3]));
+        self.positions.push(position.unwrap_or([f64::NAN; 3]));
         if color.is_some() || !self.colors.is_empty() {
             room.take(size_of::<[u16; 4]>())?;
             self.colors
@@ -269,7 +282,7 @@ impl Faces<'_> {
         let (mut stream, mut line) = (Stream::new(model), Vec::new());
         let (mut corners, mut face) = (Vec::new(), Vec::new());
         while next_line(&mut stream, &mut line)? {
-            let text = String::from_utf8_lossy(&line);
+            let text = text_of(&line);
             let (keyword, rest) = split(&text);
             let at = stream.line;
             let named = || (!rest.is_empty()).then(|| rest.to_owned());
@@ -414,8 +427,8 @@ impl Faces<'_> {
             has_colors: !lists.colors.is_empty(),
             has_texcoords: is_textured && has_texcoords,
         };
-        let first = DVec3::from(position(&corners[0]).map(f64::from));
-        let edge = |corner: &Corner| DVec3::from(position(corner).map(f64::from)) - first;
+        let first = DVec3::from(position(&corners[0]));
+        let edge = |corner: &Corner| DVec3::from(position(corner)) - first;
         let area: DVec3 = corners
             .windows(2)
             .map(|pair| edge(&pair[0]).cross(edge(&pair[1])))

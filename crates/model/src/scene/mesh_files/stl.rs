@@ -1,12 +1,15 @@
 //! STL: text, or binary with the colors of VisCAM and Magics. Its normals are those of the faces,
 //! so that they are computed.
 
+use std::collections::HashMap;
+
 use super::{
     builder::{Builder, Kind, Room, Vertex},
     colors,
     findings::Findings,
     stream::{Stream, numbers, split},
 };
+use crate::legible::text_of;
 use crate::scene::{
     gltf::{LoadError, ReadFile, Source, error::quoted, notes::Notes},
     memory::MemoryBudget,
@@ -34,6 +37,7 @@ pub fn load(
         findings: Findings::default(),
         node: None,
         face: Vec::new(),
+        known: HashMap::new(),
     };
     // Binary files may begin with the word of those of text, but their size is their own.
     match (stated(&head), is_text(&head)) {
@@ -81,6 +85,8 @@ struct Reader {
     node: Option<usize>,
     /// The corners of the facet.
     face: Vec<Vertex>,
+    /// The places of text by their bits: an f32 would take some for one, far from the origin.
+    known: HashMap<[u64; 3], u32>,
 }
 
 impl Reader {
@@ -98,7 +104,7 @@ impl Reader {
         let (mut stream, mut line) = (Stream::new(model), Vec::new());
         let mut is_broken = false;
         while stream.line(&mut line)? {
-            let text = String::from_utf8_lossy(&line);
+            let text = text_of(&line);
             let (mut keyword, mut rest) = split(&text);
             let at = stream.line;
             if keyword.eq_ignore_ascii_case("solid") {
@@ -119,7 +125,8 @@ impl Reader {
                     "vertex" => match numbers(rest.split_ascii_whitespace()) {
                         Some(position) => {
                             self.builder.widen(self.face.len() + 1)?;
-                            self.face.push(vertex(position, UNPAINTED));
+                            let key = self.key(position)?;
+                            self.face.push(Vertex::at(key, position));
                         }
                         None => {
                             is_broken = true;
@@ -129,6 +136,8 @@ impl Reader {
                         }
                     },
                     "endfacet" if !is_broken => self.facet(at)?,
+                    // Its name follows, whatever words that has.
+                    "endsolid" => break,
                     _ => {}
                 }
                 (keyword, rest) = split(rest);
@@ -138,6 +147,17 @@ impl Reader {
             self.facet(stream.line)?;
         }
         Ok(())
+    }
+
+    /// What the vertices at a place have in common.
+    fn key(&mut self, position: [f64; 3]) -> Result<[u32; 4], LoadError> {
+        let (bits, new) = (position.map(|v| (v + 0.0).to_bits()), self.known.len());
+        if let Some(&known) = self.known.get(&bits) {
+            return Ok([known, 0, 0, 0]);
+        }
+        self.builder.room.take(size_of::<([u64; 3], u32)>())?;
+        self.known.insert(bits, new as u32);
+        Ok([new as u32, 0, 0, 0])
     }
 
     fn facet(&mut self, line: u64) -> Result<(), LoadError> {
@@ -210,6 +230,6 @@ fn vertex(position: [f32; 3], (paint, color): Paint) -> Vertex {
     let [x, y, z] = position.map(|value| (value + 0.0).to_bits());
     Vertex {
         color,
-        ..Vertex::at([x, y, z, paint], position)
+        ..Vertex::at([x, y, z, paint], position.map(f64::from))
     }
 }

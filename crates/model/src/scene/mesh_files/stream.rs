@@ -1,5 +1,7 @@
 //! The bytes of a model in their order, as lines or as records, of which few are in memory at once.
 
+use std::str::FromStr;
+
 use crate::scene::gltf::{LoadError, PART_BYTES, Source};
 
 /// A place in a model, up to which it was read.
@@ -104,16 +106,18 @@ impl<'a> Stream<'a> {
     }
 }
 
-/// A finite number, also one with a decimal comma.
-pub fn number(token: &str) -> Option<f32> {
-    let read = |text: &str| text.parse::<f32>().ok();
+/// A number that is finite in an f32, also one with a decimal comma.
+pub fn number<T: FromStr + Copy + Into<f64>>(token: &str) -> Option<T> {
+    let read = |text: &str| text.parse::<T>().ok();
     let value = read(token).or_else(|| read(&token.replacen(',', ".", 1)));
-    value.filter(|value| value.is_finite())
+    value.filter(|&value| (value.into() as f32).is_finite())
 }
 
 /// The first numbers of a line that are finite; none where one is missing or is no number.
-pub fn numbers<'a, const N: usize>(mut tokens: impl Iterator<Item = &'a str>) -> Option<[f32; N]> {
-    let mut values = [0.0; N];
+pub fn numbers<'a, T: FromStr + Copy + Default + Into<f64>, const N: usize>(
+    mut tokens: impl Iterator<Item = &'a str>,
+) -> Option<[T; N]> {
+    let mut values = [T::default(); N];
     for value in &mut values {
         *value = number(tokens.next()?)?;
     }
@@ -122,9 +126,10 @@ pub fn numbers<'a, const N: usize>(mut tokens: impl Iterator<Item = &'a str>) ->
 
 /// The first word of a line, and the rest of it without white space around.
 pub fn split(line: &str) -> (&str, &str) {
-    let line = line.trim();
+    // Of ASCII alone: bytes of other encodings look like other spaces.
+    let line = line.trim_matches(|c: char| c.is_ascii_whitespace());
     match line.split_once(|c: char| c.is_ascii_whitespace()) {
-        Some((keyword, rest)) => (keyword, rest.trim_start()),
+        Some((keyword, rest)) => (keyword, rest.trim_ascii_start()),
         None => (line, ""),
     }
 }

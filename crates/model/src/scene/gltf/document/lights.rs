@@ -40,8 +40,9 @@ pub fn light(mut part: Element) -> Part<Light> {
     for (color, given) in color.iter_mut().zip(light.color) {
         *color = intensity * strength("color", given)?;
     }
-    let range_m = light.range.map(f64::from);
-    if let Some(range) = range_m.filter(|range| *range <= 0.0) {
+    // Writers say 0 for a light without an end.
+    let range_m = light.range.map(f64::from).filter(|range| *range != 0.0);
+    if let Some(range) = range_m.filter(|range| *range < 0.0) {
         return Err(format!("its range is {range}; it must be above 0"));
     }
     Ok(Light {

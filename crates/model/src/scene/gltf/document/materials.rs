@@ -123,7 +123,7 @@ fn sampler(lists: &Lists, index: usize) -> Sampler {
 }
 
 /// Where materials have textures.
-const TEXTURES: [&[&str]; 6] = [
+const TEXTURES: [&[&str]; 8] = [
     &["pbrMetallicRoughness", "baseColorTexture"],
     &["pbrMetallicRoughness", "metallicRoughnessTexture"],
     &["normalTexture"],
@@ -134,6 +134,12 @@ const TEXTURES: [&[&str]; 6] = [
         "KHR_materials_pbrSpecularGlossiness",
         "diffuseTexture",
     ],
+    &[
+        "extensions",
+        "KHR_materials_transmission",
+        "transmissionTexture",
+    ],
+    &["extensions", "KHR_materials_volume", "thicknessTexture"],
 ];
 
 /// Material `index`; a plain one where it is no object.
@@ -173,7 +179,7 @@ pub fn material(lists: &Lists, index: usize, value: &Value) -> Material {
         alpha_mode: AlphaMode::Opaque,
         alpha_cutoff: 0.5,
         has_more: false,
-        has_more_transmission: false,
+        passing: [None, None],
     };
     if let Some(part) = &reader.part {
         let mode = part.known("alphaMode", read.alpha_mode, VALID_ALPHA_MODES);
@@ -293,10 +299,9 @@ impl Reader<'_, '_> {
     /// What passes through: KHR_materials_transmission, and of KHR_materials_volume what is absorbed
     /// behind the whole thickness, by the law of Beer and Lambert.
     fn transmission(&self, extensions: &extensions::material::Material, material: &mut Material) {
-        let mut has_texture = false;
         if let Some(given) = &extensions.transmission {
             material.plain.transmission = given.transmission_factor.0.clamp(0.0, 1.0);
-            has_texture |= given.transmission_texture.is_some();
+            material.passing[0] = given.transmission_texture.as_ref().map(texture_use);
         }
         if let Some(volume) = &extensions.volume {
             let thickness = volume.thickness_factor.0.max(0.0);
@@ -310,9 +315,8 @@ impl Reader<'_, '_> {
                     "its attenuationDistance is {distance}; it must be above 0"
                 ));
             }
-            has_texture |= volume.thickness_texture.is_some();
+            material.passing[1] = volume.thickness_texture.as_ref().map(texture_use);
         }
-        material.has_more_transmission = has_texture && material.plain.transmission > 0.0;
     }
 
     fn emission(&self, factor: [f32; 3], extensions: &extensions::material::Material) -> [f32; 3] {

@@ -176,8 +176,8 @@ pub struct Material {
     pub alpha_cutoff: f32,
     /// It has textures of specular reflection or glossiness that are not drawn.
     pub has_more: bool,
-    /// It has textures of transmission or thickness that are not drawn.
-    pub has_more_transmission: bool,
+    /// Of transmission, by its red, and of thickness, by its green.
+    pub passing: [Option<TextureUse>; 2],
 }
 
 #[derive(Debug, Default)]
@@ -225,8 +225,10 @@ impl Primitive {
 pub struct Node {
     pub name: Option<String>,
     pub children: Vec<usize>,
-    pub matrix: Option<[f32; 16]>,
-    pub translation: Option<[f32; 3]>,
+    /// Neither it nor what is below it is shown.
+    pub is_hidden: bool,
+    pub matrix: Option<[f64; 16]>,
+    pub translation: Option<[f64; 3]>,
     /// A quaternion of any length but 0.
     pub rotation: Option<[f32; 4]>,
     pub scale: Option<[f32; 3]>,

@@ -29,8 +29,11 @@ pub const QUANTIZATION: &str = "KHR_mesh_quantization";
 /// Extension of lights without a size.
 pub const LIGHTS: &str = "KHR_lights_punctual";
 
+/// Extension that hides nodes with all that is below them.
+pub const VISIBILITY: &str = "KHR_node_visibility";
+
 /// Extensions that are read, besides those of materials.
-pub const READ: [&str; 7] = [
+pub const READ: [&str; 8] = [
     QUANTIZATION,
     WEBP,
     MESHOPT,
@@ -38,6 +41,7 @@ pub const READ: [&str; 7] = [
     INSTANCING,
     VARIANTS,
     LIGHTS,
+    VISIBILITY,
 ];
 
 /// Is the extension read?

@@ -23,7 +23,7 @@ use super::{
     },
     Accessor, Buffer, Camera, Instancing, Mesh, Node, Part, Primitive, Scene, Sparse, View,
     element::{Element, Object, legible_value, whole, wrong},
-    read::{LIGHTS, Lists, is_unknown_compression},
+    read::{LIGHTS, Lists, VISIBILITY, is_unknown_compression},
     variants,
 };
 use crate::scene::{accessor::ComponentType, camera::Projection, model::Topology};
@@ -266,6 +266,14 @@ pub fn node(lists: &Lists, index: usize, value: &Value) -> Node {
         part.remove(&["extensions", LIGHTS]);
     }
     let instancing = instancing(lists, &mut part);
+    let visible = part
+        .object(&["extensions", VISIBILITY])
+        .and_then(|given| given.get("visible").cloned());
+    let is_hidden = visible == Some(Value::Bool(false));
+    if let Some(other) = visible.filter(|value| !value.is_boolean()) {
+        part.fault(wrong("visible", &other, "true or false"));
+    }
+    let given = ["matrix", "translation"].map(|key| part.json.get(key).cloned());
     let Some(read): Option<json::Node> = lists.read(&mut part) else {
         return Node::default();
     };
@@ -273,8 +281,9 @@ pub fn node(lists: &Lists, index: usize, value: &Value) -> Node {
     let mut node = Node {
         name: read.name,
         children,
-        matrix: read.matrix,
-        translation: read.translation,
+        is_hidden,
+        matrix: read.matrix.map(|matrix| far(matrix, &given[0])),
+        translation: read.translation.map(|place| far(place, &given[1])),
         rotation: read.rotation.map(|rotation| rotation.0),
         scale: read.scale,
         mesh: read.mesh.map(|index| index.value()),
@@ -295,7 +304,7 @@ pub fn node(lists: &Lists, index: usize, value: &Value) -> Node {
             });
             (matrix[3], matrix[7], matrix[11], matrix[15]) = (0.0, 0.0, 0.0, 1.0);
         }
-        if node.translation.or(node.scale).is_some() || node.rotation.is_some() {
+        if node.translation.is_some() || node.scale.is_some() || node.rotation.is_some() {
             lists.notes.fault(|| {
                 format!(
                     "{}: it has a matrix and also translation, rotation or scale; the matrix is used",
@@ -316,6 +325,17 @@ pub fn node(lists: &Lists, index: usize, value: &Value) -> Node {
         node.rotation = None;
     }
     node
+}
+
+/// Numbers as the file says them where they are so far from 0 that an f32 would move them.
+fn far<const N: usize>(read: [f32; N], given: &Option<Value>) -> [f64; N] {
+    const FAR: f32 = 1024.0;
+    let given = given.as_ref().and_then(Value::as_array);
+    let exact = |i: usize| given?.get(i)?.as_f64();
+    std::array::from_fn(|i| match exact(i) {
+        Some(exact) if read[i].abs() >= FAR && exact as f32 == read[i] => exact,
+        _ => read[i].into(),
+    })
 }
 
 /// The accessors that place the instances of a node.

@@ -1,5 +1,6 @@
 //! The header of PLY.
 
+use crate::legible::text_of;
 use crate::scene::{
     gltf::{LoadError, error::quoted},
     mesh_files::stream::{Stream, split},
@@ -116,7 +117,7 @@ impl Header {
                     "its header has no end_header; the file is truncated",
                 ));
             }
-            let text = String::from_utf8_lossy(&line);
+            let text = text_of(&line);
             let (keyword, rest) = split(&text);
             let mut words = rest.split_ascii_whitespace();
             let wrong = || {

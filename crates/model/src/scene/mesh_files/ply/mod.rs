@@ -44,8 +44,12 @@ pub fn load(
     budget: MemoryBudget,
     read: &mut ReadFile,
 ) -> Result<Scene, LoadError> {
-    let head = super::head(model, budget, "a PLY file", |head| head.starts_with(b"ply"))?;
-    if !head.starts_with(b"ply") {
+    let is_ply = |head: &[u8]| {
+        let text = head.strip_prefix(b"\xef\xbb\xbf").unwrap_or(head);
+        text.starts_with(b"ply")
+    };
+    let head = super::head(model, budget, "a PLY file", is_ply)?;
+    if !is_ply(&head) {
         return Err(LoadError::new(
             "it is no PLY file: it does not begin with \"ply\"; fetch or export it again",
         ));
@@ -60,7 +64,7 @@ pub fn load(
         let place = part_name("texture", materials.len(), None);
         materials.push(Material {
             name: part_name("material", materials.len(), None),
-            base_texture: beside.texture(Path::new(""), name, &place)?,
+            base_texture: beside.texture(Path::new(""), std::slice::from_ref(name), &place)?,
             ..plain_material()
         });
     }
@@ -122,7 +126,7 @@ pub fn load(
 #[derive(Default)]
 struct Vertices {
     /// Not finite where the file has no three numbers.
-    positions: Vec<[f32; 3]>,
+    positions: Vec<[f64; 3]>,
     normals: Vec<[f32; 3]>,
     colors: Vec<[u16; 4]>,
     texcoords: Vec<[f32; 2]>,
@@ -221,13 +225,16 @@ impl Reader {
         self.builder.room.take(size_of::<Vertex>())?;
         let values = |at: [Option<usize>; 3]| at.map(|at| rows.value(at) as f32);
         let is_finite = |values: &[f32]| values.iter().all(|value| value.is_finite());
-        let (position, vertices) = (values(columns.position), &mut self.vertices);
-        if !is_finite(&position) {
+        let vertices = &mut self.vertices;
+        if !is_finite(&values(columns.position)) {
             self.findings.fault("faces with it are left out", || {
                 format!("vertex {row}: its x, y and z are not three finite numbers")
             });
         }
-        vertices.positions.push(position);
+        // What an f32 cannot hold is not finite.
+        let position = columns.position.map(|at| rows.value(at));
+        let place = |v: f64| if (v as f32).is_finite() { v } else { f64::NAN };
+        vertices.positions.push(position.map(place));
         if let Some(normal) = columns.normal {
             let normal = values(normal);
             let is_sound = is_finite(&normal);
