@@ -1,9 +1,9 @@
 //! Random programs on integers, with random expressions, against direct execution.
 
-use rasterlab::evaluator::{LANES, NoHost, Options, Word};
+use rasterlab::evaluator::{LANES, Options};
 use rasterlab_fuzz::stress::scenes::for_seeds;
 
-use super::common::{OPERATORS, Random, program_with};
+use super::common::{OPERATORS, Random, call_all, program_with};
 
 type V = [i32; 4];
 
@@ -428,42 +428,20 @@ fn statements() {
         let program = program_with(&source, "f", &options);
         let own = 8 - options.alike;
         for count in [1, LANES, 1 + random.u32(LANES as u32) as usize] {
-            let mut samples: Vec<[i32; 8]> = (0..count)
-                .map(|_| std::array::from_fn(|_| random.bits() as i32 >> random.u32(30)))
+            let mut number = || random.bits() as i32 >> random.u32(30);
+            let alike: Vec<i32> = (own..8).map(|_| number()).collect();
+            let samples: Vec<Vec<i32>> = (0..count)
+                .map(|_| (0..own).map(|_| number()).chain(alike.clone()).collect())
                 .collect();
-            let alike: Vec<i32> = samples[0][own..].to_vec();
-            for (lane, sample) in samples.iter_mut().enumerate() {
-                sample[own..].copy_from_slice(&alike);
-                for (index, &number) in sample.iter().enumerate() {
-                    if let Some(row) = program.argument(&registers, index) {
-                        row[lane].set(Word::from_i32(number));
-                    }
-                }
-            }
-            let alike: Vec<Word> = alike.into_iter().map(Word::from_i32).collect();
-            let ended = program.run(&mut registers, &alike, count, &mut NoHost);
-            assert_eq!(ended.count_ones() as usize, count, "{source}");
-            for (lane, sample) in samples.iter().enumerate() {
-                let mut state = State {
-                    g: [1, 2, 3, 4],
-                    ..State::default()
-                };
-                state.s.v.copy_from_slice(&sample[..4]);
-                state.w.copy_from_slice(&sample[4..]);
-                let expected = if run(&mut state) {
-                    state.w
-                } else {
-                    result(&state)
-                };
-                let given = each(|at| {
-                    let row = program.result(&registers, at);
-                    row.map_or(sample[at], |row| row[lane].get().to_i32())
-                });
-                assert_eq!(
-                    given, expected,
-                    "{} at {:?}, sample {} of {}",
-                    source, sample, lane, count
-                );
+            for (lane, given) in call_all(&program, &samples).into_iter().enumerate() {
+                let sample = &samples[lane];
+                let [v, w] = [0, 4].map(|first| each(|at| sample[first + at]));
+                let mut state = State::default();
+                (state.s.v, state.w, state.g) = (v, w, [1, 2, 3, 4]);
+                let is_returned = run(&mut state);
+                let expected = if is_returned { state.w } else { result(&state) };
+                let place = format!("sample {lane} of {count}: {sample:?}");
+                assert_eq!(given, expected, "{source} at {place}");
             }
         }
     });
