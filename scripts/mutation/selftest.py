@@ -349,7 +349,8 @@ class Repository(unittest.TestCase):
         self.assertEqual([step for step in suite.STEPS if any(probe.step == step for probe in probes)], suite.STEPS)
         groups = suite.commands(probes, "fog", {probe.name: 1.0 for probe in probes})
         self.assertEqual(sorted(probe.name for group in groups for probe in group), sorted(probe.name for probe in probes))
-        self.assertLess(len(groups), 40)
+        self.assertLessEqual(max(map(len, groups)), suite.REST)
+        self.assertLess(len(groups), len(probes) / 4)
         self.assertIn("fog", suite.merged(groups[0]).name)
         stress = [suite.merged(group).words for group in groups if group[0].step == "stress"]
         self.assertTrue(all(len(words) == 3 for words in stress), stress)

@@ -3,8 +3,9 @@
 import glob
 import os
 
-# Steps in the order in which a mutant meets them: the gallery, small; presets with options and scenes that the gallery lacks, in
-# scripts/mutation/presets; extreme cases; cases that need code and random presets, of the developers' program; effects of files.
+# Steps of equal cost in the order in which a mutant meets them: the gallery, small; presets with options and scenes that the gallery lacks, in
+# scripts/mutation/presets, and goldens of effects of files in scripts/mutation/files, whose oracle would follow a change of the library; extreme
+# cases; cases that need code and random presets, of the developers' program; effects of files.
 STEPS = ["verify", "options", "stress", "cases", "fuzz", "examples"]
 
 # The developers' program, beside the program, and its steps.
@@ -68,6 +69,7 @@ def probes(root, fuzz_count, fuzz_seed, leave_out=(), cases=()):
 
     found = presets("verify", ["verify", *SMALL], "presets")
     found += presets("options", ["verify", "--frames", "2"], os.path.join("scripts", "mutation", "presets"))
+    found += presets("options", ["check", "--render"], os.path.join("scripts", "mutation", "files"))
     extremes = [os.path.basename(path)[: -len(".toml")] for path in sorted(glob.glob(os.path.join(root, "presets", "extremes", "*.toml")))]
     quick = [name for name in extremes if name not in SLOW_STRESS or name in cases]
     found += [Probe("stress", ["stress", "--filter"], [name], ",") for name in quick]

@@ -1,10 +1,12 @@
-// Aberration: colors part towards the edges of the picture, as through a simple lens.
+// Aberration: colors part towards the edges, as through a simple lens.
 //@ use lib/image
 //@ use lib/image_pass
 
 struct Aberration {
-    shift_px: f32,
-    edges: f32,
+    /// How far red and blue light part in the corners, each way.
+    @range(0, 32, 7) @hard(0, 128) @unit(px) shift_px: f32,
+    /// 0: evenly from the middle on, 1: mostly at the edges.
+    @range(0, 1, 0.6) edges: f32,
 }
 
 const ABERRATION_TAPS = 4; // reads to either side of the middle

@@ -1,15 +1,20 @@
-// Ambient: corners and folds darken where little of the sky reaches them.
+// Ambient: corners and folds darken where little sky reaches them.
 //@ use lib/angle
 //@ use lib/hash
 //@ use lib/image
 //@ use lib/image_pass
 
 struct Ambient {
-    shade: vec4f,
-    radius_m: f32,
-    strength: f32,
-    most_px: f32,
-    soft_px: u32,
+    /// What hidden light is multiplied by, linear; its alpha is the strength.
+    @color(0.05, 0.06, 0.1) shade: vec4f,
+    /// How far away something still hides the sky; at least a pixel.
+    @range(0.01, 10, 0.5) @hard(0.0001, 10000) @unit(m) @log radius_m: f32,
+    /// Strength: 1 darkens by the fraction that is hidden.
+    @range(0, 4, 2) @hard(0, 16) strength: f32,
+    /// The radius in the picture is at most this.
+    @range(4, 96, 32) @hard(1, 512) @unit(px) most_px: f32,
+    /// How far noise is smoothed, on what is about equally far away.
+    @range(0, 8, 3) @hard(0, 16) @unit(px) soft_px: u32,
 }
 
 const AMBIENT_TAPS = 20;

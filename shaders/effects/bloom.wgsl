@@ -2,14 +2,20 @@
 //@ use lib/image_pass
 
 struct Bloom {
-    tint: vec4f,
-    threshold: f32,
-    knee: f32,
-    radius_px: f32,
-    intensity: f32,
+    /// Color of the light, linear; its alpha is the strength.
+    @color(1, 0.93, 0.82) tint: vec4f,
+    /// Brightness from which a place shines, linear.
+    @range(0, 1, 0.4) threshold: f32,
+    /// How far above it a place shines entirely.
+    @range(0.01, 1, 0.35) knee: f32,
+    /// How far the light reaches.
+    @range(1, 96, 36) @hard(1, 512) @unit(px) radius_px: f32,
+    /// Strength of the light.
+    @range(0, 4, 1.4) @hard(0, 16) intensity: f32,
 }
 
 // What shines, at half the size.
+@pass(half)
 fn bloom_bright(at: ImageAt, p: Bloom) -> vec4f {
     let middle = image_middle(at);
     let color = image_color_at(middle.x, middle.y);
@@ -18,10 +24,12 @@ fn bloom_bright(at: ImageAt, p: Bloom) -> vec4f {
     return vec4f(color.rgb * (past * past * (3.0 - 2.0 * past)), color.a);
 }
 
+@pass(half)
 fn bloom_across(at: ImageAt, p: Bloom) -> vec4f {
     return bloom_along(at, vec2i(1, 0), 0.5 * p.radius_px);
 }
 
+@pass(half)
 fn bloom_down(at: ImageAt, p: Bloom) -> vec4f {
     return bloom_along(at, vec2i(0, 1), 0.5 * p.radius_px);
 }

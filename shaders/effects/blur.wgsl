@@ -1,14 +1,20 @@
-// Blur: the picture out of focus, everywhere or away from a sharp band or disc.
+// Blur: out of focus, everywhere or away from a sharp band or disc.
 //@ use lib/image
 //@ use lib/image_pass
 
 struct Blur {
-    area: u32,
-    radius_px: f32,
-    center_x: f32,
-    center_y: f32,
-    sharp: f32,
-    soft: f32,
+    /// Where the picture is blurred.
+    @choice(everywhere, band, disc) @default(band) area: u32,
+    /// How far light spreads.
+    @range(0, 32, 7) @hard(0, 96) @unit(px) radius_px: f32,
+    /// Middle of what stays sharp, from the left edge at 0 to the right one at 1.
+    @range(0, 1, 0.5) @when(area, disc) center_x: f32,
+    /// The same from the top to the bottom.
+    @range(0, 1, 0.55) @when(area, band, disc) center_y: f32,
+    /// Half of the width of what stays sharp, in heights of the picture.
+    @range(0, 1, 0.08) @hard(0, 2) @when(area, band, disc) sharp: f32,
+    /// Over which distance the blur grows, in heights of the picture.
+    @range(0.01, 1, 0.35) @hard(0.001, 2) @when(area, band, disc) soft: f32,
 }
 
 fn blur_across(at: ImageAt, p: Blur) -> vec4f {

@@ -1,10 +1,12 @@
-// Boxes: fills the whole bounding box of every triangle, as a rasterizer without its inside test would.
+// Boxes: fills the whole bounding box of every triangle.
 //@ use lib/surface
 
 struct Boxes {
-    tint: vec4f,
+    /// Color of what lies beyond the triangle; alpha is its weight against the surface's color.
+    @color(1, 0.2, 0.1, 0) tint: vec4f,
 }
 
+@smooth
 fn boxes(surface: Surface, p: Boxes) -> Surface {
     var s = surface;
     // Outside the triangle at least one barycentric is clamped to 0.

@@ -1,16 +1,23 @@
-// CRT: a curved screen with scan lines and stripes of red, green and blue phosphor.
+// CRT: a curved screen with scan lines and phosphor stripes.
 //@ use lib/angle
 //@ use lib/image
 //@ use lib/image_pass
 
 struct Crt {
-    curve: f32,
-    lines: f32,
-    line_px: f32,
-    mask: f32,
-    mask_px: u32,
-    soft_px: f32,
-    gain: f32,
+    /// How much the screen bulges: 0 is flat.
+    @range(0, 0.4, 0.07) @hard(0, 1) curve: f32,
+    /// How dark it is between scan lines.
+    @range(0, 1, 0.6) lines: f32,
+    /// Distance of scan lines.
+    @range(2, 12, 3) @hard(1, 64) @unit(px) line_px: f32,
+    /// How much light of other colors the stripes of phosphor keep back.
+    @range(0, 1, 0.35) mask: f32,
+    /// Width of a red, a green and a blue stripe together.
+    @range(3, 24, 3) @hard(3, 96) @unit(px) mask_px: u32,
+    /// How far the beam spreads along a line.
+    @range(0, 4, 0.8) @hard(0, 32) @unit(px) soft_px: f32,
+    /// Brightness, which makes up for lines and stripes.
+    @range(0.5, 3, 1.6) @hard(0, 8) gain: f32,
 }
 
 fn crt(at: ImageAt, p: Crt) -> vec4f {

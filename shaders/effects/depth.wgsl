@@ -1,14 +1,20 @@
-// Depth: shades by distance from the eye, fitted to the scene or by a scale and an offset of your own.
+// Depth: shades by distance from the eye. It is fitted to the scene, or goes by a scale and an offset of your own.
 //@ use lib/surface
 
 struct Depth {
-    near: vec4f,
-    far: vec4f,
-    fit: u32,
-    scale: f32,
-    offset: f32,
+    /// Color at the near end, linear.
+    @color(1, 0.93, 0.8) near: vec4f,
+    /// Color at the far end, linear.
+    @color(0.015, 0.03, 0.07) far: vec4f,
+    /// Spread the two colors over the depth range of the scene.
+    @toggle(1) fit: u32,
+    /// Without fit: how much of the way to the far color one meter takes.
+    @range(0, 2, 0.2) @hard(-1e6, 1e6) @unit(per m) @depth scale: f32,
+    /// Without fit: position of the eye between the two colors, 0 near and 1 far.
+    @range(-2, 2, 0) @hard(-1e6, 1e6) offset: f32,
 }
 
+@smooth
 fn depth(surface: Surface, p: Depth) -> Surface {
     var s = surface;
     let fitted = (s.depth_m - s.depth_range_m.x) / (s.depth_range_m.y - s.depth_range_m.x);

@@ -1,17 +1,24 @@
-// Depth of field: what is not at the distance in focus spreads to discs of light.
+// Depth of field: what is out of focus spreads to discs of light.
 //@ use lib/angle
 //@ use lib/hash
 //@ use lib/image
 //@ use lib/image_pass
 
 struct DepthOfField {
-    focus: u32,
-    focus_x: f32,
-    focus_y: f32,
-    focus_m: f32,
-    aperture_px: f32,
-    most_px: f32,
-    highlights: f32,
+    /// What is in focus.
+    @choice(place, distance) focus: u32,
+    /// The place in focus, from the left edge at 0 to the right one at 1.
+    @range(0, 1, 0.5) @when(focus, place) focus_x: f32,
+    /// The same from the top to the bottom.
+    @range(0, 1, 0.5) @when(focus, place) focus_y: f32,
+    /// Distance in focus, along the viewing direction.
+    @range(0.1, 100, 6) @hard(0.001, 1e6) @unit(m) @log @when(focus, distance) focus_m: f32,
+    /// Radius of the disc to which a point infinitely far away spreads.
+    @range(0, 64, 16) @hard(0, 1024) @unit(px) aperture_px: f32,
+    /// The largest such radius.
+    @range(1, 32, 10) @hard(1, 120) @unit(px) most_px: f32,
+    /// How much more bright points weigh than dark ones.
+    @range(0, 16, 3) @hard(0, 64) highlights: f32,
 }
 
 const DEPTH_OF_FIELD_TAPS = 96;

@@ -1,4 +1,4 @@
-// Dissolve: fills every triangle to a fraction of its area, exactly, and lets a front travel over the model.
+// Dissolve: fills every triangle to a fraction of its area.
 //@ use lib/surface
 //@ use lib/sample
 //@ use lib/front
@@ -6,12 +6,34 @@
 //@ use lib/fixed
 
 struct Dissolve {
-    spread: Front,
-    rim: vec4f,
-    fill: f32,
-    mode: u32,
-    corner: u32,
-    rim_width: f32,
+    /// Color of the glowing rim, alpha is its strength.
+    @color(1, 0.45, 0.1, 0) rim: vec4f,
+    /// Fraction of a triangle that stays: 0 nothing, 1 everything; behind the front where there is one.
+    @range(0, 1, 0.5) fill: f32,
+    /// How a triangle fills.
+    @choice(edge, corner, centroid, scanline, hash) @default(corner) mode: u32,
+    /// Which of the three corners the sweep is about.
+    @range(0, 2, 0) @when(mode, edge, corner) corner: u32,
+    /// Width of the glowing rim, as a fraction of the path.
+    @range(0.01, 1, 0.25) @hard(0.001, 10) @log rim_width: f32,
+    /// Center of the radial front, world space.
+    @point(0, 0, 0) @soft(-3, 3) @unit(m) @when(pattern, radial) center: vec4f,
+    /// How the effect is spread over the triangles.
+    @choice(uniform, sweep, radial, random) pattern: u32,
+    /// Progress of the front: 0 before the first triangle, 1 past the last.
+    @range(0, 1, 0.5) @when(pattern, sweep, random) front: f32,
+    /// Softness of the front, as a fraction of its path.
+    @range(0.001, 2, 0.25) @hard(0.001, 100) @log @when(pattern, sweep, random) width: f32,
+    /// Direction of the sweep in the picture: part to the right.
+    @range(-1, 1, 1) @when(pattern, sweep) along_x: f32,
+    /// Direction of the sweep in the picture: part downwards.
+    @range(-1, 1, 0) @when(pattern, sweep) along_y: f32,
+    /// Distance of the front from the center.
+    @range(0, 5, 1) @hard(0, 1e6) @unit(m) @when(pattern, radial) radius_m: f32,
+    /// Thickness of the front.
+    @range(0.01, 5, 0.5) @hard(0.001, 1e6) @unit(m) @log @when(pattern, radial) width_m: f32,
+    /// Seed of everything random in the effect.
+    @range(0, 999, 0) @hard(0, 4294967295) seed: u32,
 }
 
 const DISSOLVE_ONE = 16777216u; // 2^24: the whole triangle
@@ -19,8 +41,8 @@ const DISSOLVE_NO_END = 0xffffffffu; // behind every sample of the triangle
 const DISSOLVE_BY_HASH = 1u;
 
 fn dissolve_fill(p: Dissolve, center: vec3f, center_screen: vec2f, triangle: u32) -> f32 {
-    if p.spread.pattern == DISSOLVE_PATTERN_UNIFORM { return p.fill; }
-    return 1.0 - (1.0 - p.fill) * front_reached(p.spread, center, center_screen, triangle);
+    if p.pattern == DISSOLVE_PATTERN_UNIFORM { return p.fill; }
+    return 1.0 - (1.0 - p.fill) * front_reached(dissolve_front(p), center, center_screen, triangle);
 }
 
 // round(sqrt(x / 2^24) * 2^16); 65,537 for x = 2^24.
@@ -72,7 +94,7 @@ fn dissolve_sample_setup(t: TriangleSetup, p: Dissolve) -> vec4u {
 
 fn dissolve_sample(s: Sample, p: Dissolve) -> bool {
     let pixel = (s.at.y << 16u) | s.at.x;
-    if s.setup.z == DISSOLVE_BY_HASH { return (hash(hash(s.triangle ^ p.spread.seed) ^ pixel) >> 8u) < s.setup.x; }
+    if s.setup.z == DISSOLVE_BY_HASH { return (hash(hash(s.triangle ^ p.seed) ^ pixel) >> 8u) < s.setup.x; }
     if p.mode == DISSOLVE_MODE_SCANLINE { return pixel < s.setup.y; }
     let whole = sample_total_area(s);
     let part = select(select(s.areas.x, s.areas.y, p.corner == 1u), s.areas.z, p.corner == 2u);
@@ -83,6 +105,7 @@ fn dissolve_sample(s: Sample, p: Dissolve) -> bool {
 }
 
 // A rim that glows where the triangle is about to disappear.
+@smooth
 fn dissolve_surface(surface: Surface, p: Dissolve) -> Surface {
     var s = surface;
     let fill = clamp(dissolve_fill(p, s.center, s.center_screen, s.triangle_id), 0.0, 1.0);
@@ -128,4 +151,8 @@ fn dissolve_span_cut(begin: vec2i, end: vec2i, y: i32, span: vec2i) -> vec2i {
 // The samples of row y in a box of pixels that the triangle (a, b, c), clockwise on screen, covers; exact at every size.
 fn dissolve_span(a: vec2i, b: vec2i, c: vec2i, y: i32, pixels: vec4i) -> vec2i {
     return dissolve_span_cut(c, a, y, dissolve_span_cut(b, c, y, dissolve_span_cut(a, b, y, pixels.xz)));
+}
+
+fn dissolve_front(p: Dissolve) -> Front {
+    return Front(p.center, p.pattern, p.front, p.width, p.along_x, p.along_y, p.radius_m, p.width_m, p.seed);
 }

@@ -1,15 +1,21 @@
-// Dither: ordered dithering (Bayer 1973), so that few levels look like many.
+// Dither: ordered dithering, so that few levels look like many. The matrix is Bayer's (1973).
 //@ use lib/bayer
 //@ use lib/image
 //@ use lib/color
 
 struct Dither {
-    ink: vec4f,
-    paper: vec4f,
-    levels: u32,
-    palette: u32,
-    matrix: u32,
-    cell_px: u32,
+    /// Color of the lowest level, linear.
+    @color(0.02, 0.03, 0.05) @when(palette, duotone) ink: vec4f,
+    /// Color of the highest level, linear.
+    @color(0.8, 0.82, 0.7) @when(palette, duotone) paper: vec4f,
+    /// Number of levels, lowest and highest included.
+    @range(2, 256, 256) levels: u32,
+    /// Which colors the levels have.
+    @choice(rgb, duotone) palette: u32,
+    /// Size of the matrix.
+    @choice(bayer8, bayer4, bayer2) matrix: u32,
+    /// Side of a cell of the matrix.
+    @range(1, 8, 1) @hard(1, 1024) @unit(px) cell_px: u32,
 }
 
 fn dither(pixel: Pixel, p: Dither) -> Pixel {

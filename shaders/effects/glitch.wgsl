@@ -1,15 +1,22 @@
-// Glitch: rows and blocks of the picture slip aside, and its colors part, as in a broken transmission.
+// Glitch: a broken transmission: rows slip, colors part. Rows and blocks of the picture slip aside.
 //@ use lib/hash
 //@ use lib/image_pass
 
 struct Glitch {
-    amount: f32,
-    row_px: u32,
-    shift_px: u32,
-    split_px: u32,
-    blocks: f32,
-    noise: f32,
-    seed: u32,
+    /// How much of the picture is torn.
+    @range(0, 1, 0.35) amount: f32,
+    /// Height of a row that slips.
+    @range(1, 32, 4) @hard(1, 256) @unit(px) row_px: u32,
+    /// How far a row slips at most.
+    @range(0, 256, 40) @hard(0, 4096) @unit(px) shift_px: u32,
+    /// How far red and blue part, each way; three times as far where the picture is torn.
+    @range(0, 32, 2) @hard(0, 256) @unit(px) split_px: u32,
+    /// How many blocks slip beside rows.
+    @range(0, 1, 0.4) blocks: f32,
+    /// Strength of the snow where the picture is torn.
+    @range(0, 1, 0.05) noise: f32,
+    /// Another seed tears the picture elsewhere.
+    @range(0, 65535, 7) seed: u32,
 }
 
 fn glitch(at: ImageAt, p: Glitch) -> vec4f {

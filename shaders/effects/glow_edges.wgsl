@@ -1,23 +1,30 @@
-// Glow edges: silhouettes and steps of depth shine like neon tubes in a dark picture.
+// Glow edges: silhouettes and steps of depth shine like neon tubes.
 //@ use lib/hash
 //@ use lib/image
 //@ use lib/image_pass
 
 struct GlowEdges {
-    color: vec4f,
-    hue: u32,
-    radius_px: f32,
-    intensity: f32,
-    picture: f32,
-    depth_threshold: f32,
+    /// The one color, linear; its alpha is the strength of all tubes.
+    @color(0.15, 0.75, 1) color: vec4f,
+    /// What color the tubes have.
+    @choice(objects, picture, one) hue: u32,
+    /// How far the light reaches.
+    @range(1, 64, 16) @hard(1, 256) @unit(px) radius_px: f32,
+    /// Strength of the light around the tubes.
+    @range(0, 8, 3) @hard(0, 32) intensity: f32,
+    /// How much of the picture is seen beneath.
+    @range(0, 1, 0.12) picture: f32,
+    /// The least jump of depth within an object that counts, as a fraction of the distance.
+    @range(0.001, 0.5, 0.02) @hard(0.0001, 1) @log depth_threshold: f32,
 }
 
 // The tubes alone.
 fn glow_edges_find(at: ImageAt, p: GlowEdges) -> vec4f {
-    return glow_edges_tube(at, p);
+    return glow_edges_tube(p, at);
 }
 
 // At half the size from here.
+@pass(half)
 fn glow_edges_across(at: ImageAt, p: GlowEdges) -> vec4f {
     let middle = image_middle(at);
     let radius = 0.5 * p.radius_px;
@@ -32,6 +39,7 @@ fn glow_edges_across(at: ImageAt, p: GlowEdges) -> vec4f {
     return sum / weights;
 }
 
+@pass(half)
 fn glow_edges_down(at: ImageAt, p: GlowEdges) -> vec4f {
     let radius = 0.5 * p.radius_px;
     let reach = i32(ceil(radius));
@@ -47,7 +55,7 @@ fn glow_edges_down(at: ImageAt, p: GlowEdges) -> vec4f {
 
 fn glow_edges_shine(at: ImageAt, p: GlowEdges) -> vec4f {
     let color = image_color(at.x, at.y);
-    let tube = glow_edges_tube(at, p);
+    let tube = glow_edges_tube(p, at);
     let middle = 0.5 * image_middle(at);
     // A tube is a pixel wide, so a mean over a larger radius has less of it: the halo is as bright at any size of the picture.
     let halo = p.intensity * (p.radius_px / 16.0) * image_last_at(middle.x, middle.y).rgb;
@@ -64,7 +72,7 @@ fn glow_edges_weight(t: f32) -> f32 {
 }
 
 // The color of the tube at a pixel, and whether there is one.
-fn glow_edges_tube(at: ImageAt, p: GlowEdges) -> vec4f {
+fn glow_edges_tube(p: GlowEdges, at: ImageAt) -> vec4f {
     let here = image_at(at.x, at.y);
     let right = glow_edges_is_edge(here, vec2i(at.x, at.y), vec2i(1, 0), p);
     let down = glow_edges_is_edge(here, vec2i(at.x, at.y), vec2i(0, 1), p);

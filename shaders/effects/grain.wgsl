@@ -1,13 +1,17 @@
-// Grain: the noise of a photographic film, strongest in the middle tones.
+// Grain: the noise of a photographic film. It is strongest in the middle tones.
 //@ use lib/image_pass
 //@ use lib/color
 //@ use lib/hash
 
 struct Grain {
-    amount: f32,
-    color: f32,
-    size_px: u32,
-    seed: u32,
+    /// Strength of the noise.
+    @range(0, 1, 0.35) amount: f32,
+    /// How far red, green and blue have noise of their own.
+    @range(0, 1, 0.25) color: f32,
+    /// Size of a grain.
+    @range(1, 8, 1) @hard(1, 64) @unit(px) size_px: u32,
+    /// Another seed gives other noise.
+    @range(0, 65535, 0) seed: u32,
 }
 
 fn grain(at: ImageAt, p: Grain) -> vec4f {

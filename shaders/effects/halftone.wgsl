@@ -1,15 +1,21 @@
-// Halftone: dots of ink on paper, large where the picture is dark.
+// Halftone: dots of ink on paper, large where it is dark.
 //@ use lib/angle
 //@ use lib/color
 //@ use lib/image_pass
 
 struct Halftone {
-    ink: vec4f,
-    paper: vec4f,
-    inks: u32,
-    cell_px: f32,
-    angle_deg: f32,
-    black: f32,
+    /// Color of the one ink, linear; its alpha is how well it covers.
+    @color(0.02, 0.03, 0.06) @when(inks, one) ink: vec4f,
+    /// Color of the paper, linear.
+    @color(0.93, 0.89, 0.8) paper: vec4f,
+    /// With which inks the picture is printed.
+    @choice(four, one) inks: u32,
+    /// Distance of dots.
+    @range(3, 32, 5) @hard(2, 256) @unit(px) cell_px: f32,
+    /// Turns all screens.
+    @range(-90, 90, 0) @hard(-180, 180) @unit(°) angle_deg: f32,
+    /// How much of what all colors have in common is printed black.
+    @range(0, 1, 0.7) @when(inks, four) black: f32,
 }
 
 fn halftone(at: ImageAt, p: Halftone) -> vec4f {

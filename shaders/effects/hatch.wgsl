@@ -4,19 +4,31 @@
 //@ use lib/angle
 
 struct Hatch {
-    ink: vec4f,
-    paper: vec4f,
-    space: u32,
-    spacing_px: f32,
-    spacing_m: f32,
-    angle_deg: f32,
-    layers: u32,
-    width: f32,
-    dark: f32,
-    bright: f32,
-    tint: f32,
+    /// Color of the lines, linear.
+    @color(0.012, 0.014, 0.03) ink: vec4f,
+    /// Color between the lines, linear.
+    @color(0.86, 0.82, 0.72) paper: vec4f,
+    /// The space in which the lines are drawn.
+    @choice(screen, surface) space: u32,
+    /// Distance of two lines in the picture.
+    @range(3, 24, 6) @hard(0.25, 1024) @unit(px) @when(space, screen) spacing_px: f32,
+    /// Distance of two planes.
+    @range(0.01, 0.5, 0.06) @hard(0.001, 1000) @unit(m) @log @when(space, surface) spacing_m: f32,
+    /// Direction of the first layer; the second crosses it, two more lie between.
+    @range(-90, 90, 35) @hard(-360, 360) @unit(°) angle_deg: f32,
+    /// Layers that appear one after the other.
+    @range(1, 4, 3) layers: u32,
+    /// Width of a full line, as a fraction of the spacing.
+    @range(0.05, 1, 0.55) width: f32,
+    /// Tone at which every layer is full, as the eye sees it.
+    @range(0, 1, 0.05) dark: f32,
+    /// Tone from which the paper stays bare.
+    @range(0, 1, 0.9) bright: f32,
+    /// How much of the surface's hue the paper takes on.
+    @range(0, 1, 0) tint: f32,
 }
 
+@smooth
 fn hatch(surface: Surface, p: Hatch) -> Surface {
     var s = surface;
     let base = max(s.color.rgb, vec3f(0.0));

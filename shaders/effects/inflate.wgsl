@@ -1,8 +1,9 @@
-// Inflate: every vertex moves along its own normal, so that a smooth surface swells or shrinks without a tear.
+// Inflate: moves every vertex along its own normal: the model swells or shrinks.
 //@ use lib/vertex
 
 struct Inflate {
-    amount_m: f32,
+    /// How far every vertex moves along its normal; negative: inwards.
+    @range(-0.5, 0.5, 0.05) @hard(-1000, 1000) @unit(m) amount_m: f32,
 }
 
 fn inflate(vertex: Vertex, p: Inflate) -> Vertex {

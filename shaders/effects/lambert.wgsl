@@ -1,14 +1,20 @@
-// Lambert: diffuse light from a sun, a sky above and ground below, and a headlight.
+// Lambert: diffuse light from sun, sky, ground and a headlight.
 //@ use lib/surface
 
 struct Lambert {
-    sun: vec4f,
-    sky: vec4f,
-    ground: vec4f,
-    sun_direction: vec4f,
-    headlight: f32,
+    /// Color of the sun, linear.
+    @color(0.82, 0.76, 0.66) sun: vec4f,
+    /// Light from straight above, linear.
+    @color(0.16, 0.19, 0.24) sky: vec4f,
+    /// Light from straight below, linear.
+    @color(0.07, 0.055, 0.045) ground: vec4f,
+    /// Direction towards the sun, of any length.
+    @point(0.55, 0.8, 0.6) @hard(-1000, 1000) @soft(-1, 1) sun_direction: vec4f,
+    /// Strength of a white light at the eye.
+    @range(0, 1, 0.08) @hard(0, 10) headlight: f32,
 }
 
+@smooth
 fn lambert(surface: Surface, p: Lambert) -> Surface {
     var s = surface;
     let squared = dot(p.sun_direction.xyz, p.sun_direction.xyz);

@@ -1,10 +1,13 @@
-// Matcap: paints a surface by the way it faces in the view, as a ball of some material looks under lamps that move with the eye.
+// Matcap: paints by the way a surface faces: a ball of clay, wax, jade or chrome. A ball of some material looks so under lamps that move with the eye.
 //@ use lib/surface
 
 struct Matcap {
-    ball: u32,
-    tint: f32,
-    amount: f32,
+    /// What the ball is made of.
+    @choice(clay, wax, jade, chrome) ball: u32,
+    /// How much the surface's own color tints the ball.
+    @range(0, 1, 1) tint: f32,
+    /// How much of the ball is seen.
+    @range(0, 1, 1) amount: f32,
 }
 
 // A ball that no surroundings are seen in.
@@ -16,6 +19,7 @@ struct MatcapPaint {
     sharp: f32, // how sharp it is, 0 to 1
 }
 
+@smooth
 fn matcap(surface: Surface, p: Matcap) -> Surface {
     var s = surface;
     // Where the eye looks nearly straight up or down, the directions across the view have no use, and fade out.

@@ -1,10 +1,12 @@
-// Normals: colors the surface by the direction it faces, x red, y green, z blue.
+// Normals: colors the surface by the direction it faces. x is red, y green, z blue.
 //@ use lib/surface
 
 struct Normals {
-    amount: f32,
+    /// How much of the base color is replaced.
+    @range(0, 1, 1) amount: f32,
 }
 
+@smooth
 fn normals(surface: Surface, p: Normals) -> Surface {
     var s = surface;
     let shade = s.normal * 0.5 + 0.5;

@@ -1,18 +1,27 @@
-// Outline: lines where the integers of the picture change: at silhouettes, between objects, at steps of depth.
+// Outline: lines at silhouettes, between objects and at steps of depth. What changes there are the integers of the picture.
 //@ use lib/image
 //@ use lib/color
 
 struct Outline {
-    color: vec4f,
-    width_px: u32,
-    side: u32,
-    silhouette: u32,
-    objects: u32,
-    intersections: u32,
-    depth: u32,
-    depth_threshold: f32,
+    /// Color of the line, linear; its alpha is the strength.
+    @color(0.004, 0.004, 0.008) color: vec4f,
+    /// Width of the line.
+    @range(1, 8, 2) @hard(1, 64) @unit(px) width_px: u32,
+    /// Which side of an edge the line lies on.
+    @choice(outside, inside, both) side: u32,
+    /// Lines between what is drawn and the background.
+    @toggle(1) silhouette: u32,
+    /// Lines between objects.
+    @toggle(1) objects: u32,
+    /// Lines between objects only where they meet: where their depths differ by less than a jump.
+    @toggle(0) intersections: u32,
+    /// Lines where the depth jumps within an object.
+    @toggle(1) depth: u32,
+    /// The least jump that counts, as a fraction of the distance.
+    @range(0.001, 0.5, 0.05) @hard(0.0001, 1) @log depth_threshold: f32,
 }
 
+@smooth
 fn outline(pixel: Pixel, p: Outline) -> Pixel {
     var q = pixel;
     let at = vec2i(vec2u(q.x, q.y));

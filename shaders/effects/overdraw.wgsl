@@ -1,9 +1,12 @@
-// Overdraw: how many layers each pixel has, as heat.
+// Overdraw: paints how many layers each pixel has, as heat.
 
 struct Overdraw {
-    max_layers: u32,
-    scale: u32,
-    palette: u32,
+    /// Layers at full heat; more look the same.
+    @range(1, 100, 12) @hard(1, 1e9) @log max_layers: u32,
+    /// How layers become heat.
+    @choice(linear, log) scale: u32,
+    /// The colors of heat.
+    @choice(ember, reef, grey) palette: u32,
 }
 
 // Colors from cold to hot at equal steps of heat, gamma-encoded, red in the lowest byte: ember, reef, gray.

@@ -1,12 +1,17 @@
-// Paint: brush strokes that follow the shapes of the picture (anisotropic Kuwahara filter).
+// Paint: brush strokes that follow the shapes. An anisotropic Kuwahara filter.
 //@ use lib/image_pass
 
 struct Paint {
-    radius_px: f32,
-    stretch: f32,
-    smooth_px: f32,
-    hardness: f32,
-    saturation: f32,
+    /// Size of the brush.
+    @range(1, 10, 4) @hard(1, 24) @unit(px) radius_px: f32,
+    /// How much longer strokes get along shapes.
+    @range(0, 2, 1.2) stretch: f32,
+    /// How far the directions of strokes are smoothed.
+    @range(0, 8, 3) @hard(0, 32) @unit(px) smooth_px: f32,
+    /// How sharply the edges of strokes are cut.
+    @range(1, 10000, 1000) @hard(0, 100000) @log hardness: f32,
+    /// Strength of the colors: 1 as they are.
+    @range(0, 2, 1.15) @hard(0, 4) saturation: f32,
 }
 
 // Sums over four sectors, one in each component.

@@ -1,12 +1,15 @@
-// Palette: every pixel takes the nearest of a few inks, mixed by ordered dithering.
+// Palette: every pixel takes the nearest of a few inks, dithered.
 //@ use lib/bayer
 //@ use lib/color
 //@ use lib/image_pass
 
 struct Palette {
-    inks: u32,
-    dither: f32,
-    cell_px: u32,
+    /// The inks.
+    @choice(handheld, cga, ember, arcade) @default(arcade) inks: u32,
+    /// How far a 4 by 4 matrix moves colors apart before each takes its ink, of black to white.
+    @range(0, 1, 0.12) dither: f32,
+    /// Side of a cell of the matrix.
+    @range(1, 8, 1) @hard(1, 1024) @unit(px) cell_px: u32,
 }
 
 // Inks, gamma-encoded, red in the lowest byte: handheld, cga, ember, arcade.

@@ -1,9 +1,11 @@
-// Pixelate: large square pixels, each of one color.
+// Pixelate: large square pixels. Each has one color.
 //@ use lib/image_pass
 
 struct Pixelate {
-    size_px: u32,
-    gap: f32,
+    /// Side of a square.
+    @range(2, 32, 5) @hard(1, 512) @unit(px) size_px: u32,
+    /// How dark the lines between the squares are.
+    @range(0, 1, 0.15) gap: f32,
 }
 
 fn pixelate(at: ImageAt, p: Pixelate) -> vec4f {

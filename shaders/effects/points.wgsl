@@ -1,5 +1,6 @@
-// Points: draws the corners of triangles as discs instead of the triangles.
+// Points: draws the corners of triangles as discs.
 
 struct Points {
-    size_px: f32,
+    /// Diameter of the discs.
+    @range(0.5, 16, 3) @hard(0, 64) @unit(px) size_px: f32,
 }

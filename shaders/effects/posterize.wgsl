@@ -2,9 +2,12 @@
 //@ use lib/image
 
 struct Posterize {
-    by: u32,
-    levels: u32,
-    amount: f32,
+    /// What is quantized.
+    @choice(channels, brightness) by: u32,
+    /// Number of levels, black and white included.
+    @range(2, 16, 5) @hard(2, 256) levels: u32,
+    /// How far colors move to their level: 0 not at all, 1 entirely.
+    @range(0, 1, 1) amount: f32,
 }
 
 fn posterize(pixel: Pixel, p: Posterize) -> Pixel {

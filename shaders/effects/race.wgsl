@@ -1,8 +1,9 @@
-// Race: what goes wrong without atomics, live: load the depth, compare, store depth and triangle id.
+// Race: stores depth and triangle id without atomics: wrong, and not twice the same.
 //@ use lib/hash
 
 struct Race {
-    delay: u32,
+    /// Idle work between the look at the depth and the store, each step twice the one before: the longer, the more is lost.
+    @range(0, 4, 0) delay: u32,
 }
 
 fn race_idle(key: u32) -> u32 {

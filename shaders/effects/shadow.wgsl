@@ -1,17 +1,26 @@
-// Shadow: a directional light with a shadow map, which the rasterizer itself draws from the light.
+// Shadow: a directional light whose shadows the rasterizer draws itself.
 //@ use lib/surface
 //@ use lib/angle
 
 struct Shadow {
-    light: vec4f,
-    sky: vec4f,
-    ground: vec4f,
-    azimuth_deg: f32,
-    elevation_deg: f32,
-    shading: u32,
-    strength: f32,
-    bias: f32,
-    slope: f32,
+    /// Color of the light, linear.
+    @color(0.92, 0.84, 0.7) @when(shading, lambert) light: vec4f,
+    /// Light from straight above that nothing stops, linear.
+    @color(0.16, 0.19, 0.24) @when(shading, lambert) sky: vec4f,
+    /// Light from straight below that nothing stops, linear.
+    @color(0.08, 0.065, 0.055) @when(shading, lambert) ground: vec4f,
+    /// Where the light comes from: 0 in front of the scene, 90 from its right.
+    @range(-180, 180, 40) @hard(-36000, 36000) @unit(°) azimuth_deg: f32,
+    /// Elevation of the light: 90 straight above.
+    @range(-90, 90, 48) @unit(°) elevation_deg: f32,
+    /// What the light does.
+    @choice(lambert, dim) shading: u32,
+    /// Fraction of the light that a shadow removes.
+    @range(0, 1, 1) strength: f32,
+    /// How many texels a surface is moved towards the light before it is compared.
+    @range(0, 4, 0.5) @hard(-64, 64) bias: f32,
+    /// The same for every unit of the tangent of the angle between the light and the surface's normal.
+    @range(0, 4, 0.25) @hard(-64, 64) slope: f32,
 }
 
 fn shadow_toward(p: Shadow) -> vec3f {

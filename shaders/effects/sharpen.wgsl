@@ -1,10 +1,13 @@
-// Sharpen: what differs from its surroundings differs more.
+// Sharpen: edges stand out, without halos. What differs from its surroundings differs more.
 //@ use lib/image_pass
 
 struct Sharpen {
-    amount: f32,
-    radius_px: u32,
-    halo: f32,
+    /// Strength: 1 doubles the difference.
+    @range(0, 3, 0.8) @hard(0, 8) amount: f32,
+    /// Distance of the pixels that count as surroundings.
+    @range(1, 8, 1) @hard(1, 64) @unit(px) radius_px: u32,
+    /// How far edges may rise above and fall below their surroundings: 0 leaves no halo.
+    @range(0, 1, 0.1) halo: f32,
 }
 
 fn sharpen(at: ImageAt, p: Sharpen) -> vec4f {

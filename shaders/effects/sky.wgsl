@@ -7,10 +7,14 @@
 //@ use variants/surroundings
 
 struct Sky {
-    environment: u32,
-    turn_deg: f32,
-    strength: f32,
-    blur: f32,
+    /// What surrounds the scene.
+    @choice(studio, overcast, low_sun, night, picture) environment: u32,
+    /// Turns it about the vertical axis.
+    @range(-180, 180, 0) @hard(-36000, 36000) @unit(°) turn_deg: f32,
+    /// Strength of its light.
+    @range(0, 4, 1) @hard(0, 1000) strength: f32,
+    /// How blurred it is: 0 not at all, 1 as a matt mirror shows it.
+    @range(0, 1, 0.3) blur: f32,
 }
 
 fn sky(at: ImageAt, p: Sky) -> vec4f {

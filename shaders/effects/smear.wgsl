@@ -1,12 +1,16 @@
-// Smear: where nothing is drawn, the previous picture remains and fades towards the background.
+// Smear: where nothing is drawn the picture before stays, and fades.
 //@ use lib/image
 
 struct Smear {
-    fade: f32,
-    frames: u32,
-    step_s: f32,
+    /// Fraction of the difference to the background that a trail loses from one picture to the next: 1 leaves no trail, 0 never fades.
+    @range(0, 0.5, 0.12) @hard(0, 1) fade: f32,
+    /// Earlier pictures that are drawn before a single one.
+    @range(0, 32, 12) frames: u32,
+    /// Time from one of them to the next.
+    @range(0.01, 0.5, 0.04) @hard(0, 60) @unit(s) step_s: f32,
 }
 
+@smooth
 fn smear(pixel: Pixel, p: Smear) -> Pixel {
     var q = pixel;
     if image_at(i32(q.x), i32(q.y)).x != IMAGE_NO_TRIANGLE { return q; }

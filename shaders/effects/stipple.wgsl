@@ -1,13 +1,18 @@
-// Stipple: screen-door transparency by an ordered integer matrix.
+// Stipple: screen-door transparency by an ordered matrix.
 //@ use lib/sample
 //@ use lib/hash
 
 struct Stipple {
-    opacity: f32,
-    matrix: u32,
-    cell_px: u32,
-    shift_per_triangle: u32,
-    seed: u32,
+    /// Fraction of the samples that are drawn.
+    @range(0, 1, 0.5) opacity: f32,
+    /// Matrix whose order the samples follow: the larger, the more levels.
+    @choice(2x2, 4x4, 8x8) @default(8x8) matrix: u32,
+    /// Side of one cell of the matrix.
+    @range(1, 8, 1) @hard(1, 1024) @unit(px) cell_px: u32,
+    /// Shifts the matrix from triangle to triangle, so that layers do not hide behind each other.
+    @toggle(0) shift_per_triangle: u32,
+    /// Seed of the shifts.
+    @range(0, 999, 1) @hard(0, 4294967295) seed: u32,
 }
 
 fn stipple(s: Sample, p: Stipple) -> bool {

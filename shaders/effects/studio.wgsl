@@ -1,21 +1,32 @@
-// Studio: materials of glTF 2.0 under a sun and an environment. The formulas and their sources are explained in `effects/studio`.
+// Studio: metals, plastics and glazes under a sun and what surrounds them.
 //@ use lib/surface
 //@ use lib/angle
 //@ use lib/environment
 //@ use variants/surroundings
 
 struct Studio {
-    sun: vec4f,
-    sun_direction: vec4f,
-    environment: u32,
-    turn_deg: f32,
-    strength: f32,
-    material: u32,
-    metallic: f32,
-    roughness: f32,
-    lights: f32,
+    /// Color of the sun, linear.
+    @color(0.5, 0.47, 0.42) sun: vec4f,
+    /// Direction towards the sun, of any length.
+    @point(0.55, 0.8, 0.6) @hard(-1000, 1000) @soft(-1, 1) sun_direction: vec4f,
+    /// What surrounds the scene and is reflected.
+    @choice(studio, overcast, low_sun, night, picture) environment: u32,
+    /// Turns the environment about the vertical axis.
+    @range(-180, 180, 0) @hard(-36000, 36000) @unit(°) turn_deg: f32,
+    /// Strength of the environment's light.
+    @range(0, 4, 1) @hard(0, 1000) strength: f32,
+    /// Where metallic and roughness come from.
+    @choice(scene, own) material: u32,
+    /// 0: not a metal; 1: a metal, which reflects its base color.
+    @range(0, 1, 0) @when(material, own) metallic: f32,
+    /// Perceptual roughness: 0 a mirror, 1 matt.
+    @range(0, 1, 0.4) @when(material, own) roughness: f32,
+    /// Strength of the lights that come with the scene; they cast no shadows. 1: a white matt
+    /// surface shows lux divided by π, as in three.js; 0: they are off.
+    @range(0, 4, 1) @hard(0, 1000) lights: f32,
 }
 
+@smooth
 fn studio(surface: Surface, p: Studio) -> Surface {
     var s = surface;
     let m = studio_material(s, p);
@@ -123,6 +134,7 @@ fn studio_from_sun(m: StudioReflector, seen: StudioAlbedo, normal: vec3f, view: 
 //@ use lib/surface
 //@ use lib/punctual
 
+@smooth
 fn studio_under_lights(surface: Surface, p: Studio) -> Surface {
     let m = studio_material(surface, p);
     let seen = studio_albedo(m, max(dot(surface.normal, surface.view), STUDIO_GRAZING));

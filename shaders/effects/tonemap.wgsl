@@ -1,12 +1,16 @@
-// Tone mapping: fits light of any strength into what a screen shows.
+// Tonemap: fits light of any strength into what a screen shows.
 //@ use lib/surface
 
 struct Tonemap {
-    curve: u32,
-    exposure: f32,
-    background: u32,
+    /// The curve from light to what is shown.
+    @choice(none, reinhard, neutral, aces, agx) @default(neutral) curve: u32,
+    /// Exposure before the curve; each stop doubles the light.
+    @range(-4, 4, 0) @hard(-16, 16) @unit(stops) exposure: f32,
+    /// The background is exposed and mapped, too.
+    @toggle(0) background: u32,
 }
 
+@smooth
 fn tonemap(surface: Surface, p: Tonemap) -> Surface {
     var s = surface;
     let shown = tonemap_shown(s.color.rgb, p);

@@ -2,12 +2,18 @@
 //@ use lib/surface
 
 struct Toon {
-    rim: vec4f,
-    steps: u32,
-    softness: f32,
-    shadow: f32,
-    light: f32,
-    rim_width: f32,
+    /// Color of the rim, linear; its alpha is the strength.
+    @color(1, 0.96, 0.88, 0) rim: vec4f,
+    /// Number of flat tones.
+    @range(1, 8, 3) @hard(1, 16) steps: u32,
+    /// Width of the edge between two tones, as a fraction of a step.
+    @range(0.05, 1, 0.12) softness: f32,
+    /// Tone of the darkest step, as the eye sees it.
+    @range(0, 1, 0.3) shadow: f32,
+    /// Tone of the brightest step.
+    @range(0, 1, 0.95) light: f32,
+    /// How far the rim reaches in from the outline: 1 to where the surface faces the eye.
+    @range(0.02, 1, 0.35) rim_width: f32,
 }
 
 fn toon(surface: Surface, p: Toon) -> Surface {

@@ -3,10 +3,13 @@
 //@ use lib/hash
 
 struct TriangleId {
-    amount: f32,
-    seed: u32,
+    /// How much of the base color is replaced.
+    @range(0, 1, 1) amount: f32,
+    /// Another seed, other colors.
+    @range(0, 999, 0) @hard(0, 4294967295) seed: u32,
 }
 
+@smooth
 fn triangle_id(surface: Surface, p: TriangleId) -> Surface {
     var s = surface;
     let h = hash(s.triangle_id ^ (p.seed * HASH_GOLDEN));

@@ -1,12 +1,16 @@
-// Vignette: the picture darkens towards its corners, as through a lens.
+// Vignette: the picture darkens towards its corners. Lenses do the same.
 //@ use lib/image
 //@ use lib/image_pass
 
 struct Vignette {
-    color: vec4f,
-    amount: f32,
-    reach: f32,
-    roundness: f32,
+    /// What the corners turn to, linear; its alpha is the strength.
+    @color(0, 0, 0) color: vec4f,
+    /// How far the corners turn to it: 1 entirely.
+    @range(0, 1, 0.7) amount: f32,
+    /// Where it begins, from the middle of the picture at 0 to its corners at 1.
+    @range(0, 0.99, 0.35) reach: f32,
+    /// 0: an ellipse in the shape of the picture, 1: a circle.
+    @range(0, 1, 0.5) roundness: f32,
 }
 
 fn vignette(at: ImageAt, p: Vignette) -> vec4f {

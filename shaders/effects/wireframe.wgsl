@@ -1,13 +1,17 @@
-// Wireframe: draws the edges of triangles at a constant width in pixels.
+// Wireframe: draws the edges of triangles at a constant width. The width is in pixels.
 //@ use lib/surface
 //@ use lib/sample
 //@ use lib/fixed
 
 struct Wireframe {
-    ink: vec4f,
-    paper: vec4f,
-    width_px: f32,
-    hidden: u32,
+    /// Color of the lines; alpha is its weight against the surface's color.
+    @color(0.9, 0.95, 1) ink: vec4f,
+    /// Color of the faces; alpha is its weight against the surface's color.
+    @color(0.01, 0.012, 0.02) @when(hidden, removed) paper: vec4f,
+    /// Width of the lines.
+    @range(0.5, 8, 1.5) @hard(0, 256) @unit(px) width_px: f32,
+    /// What becomes of lines behind faces.
+    @choice(shown, removed) @default(removed) hidden: u32,
 }
 
 // For the edge opposite each corner: the area from which a sample is too far away; 0 draws nothing. Each triangle draws half of
@@ -32,6 +36,7 @@ fn wireframe_sample(s: Sample, p: Wireframe) -> bool {
     return p.hidden == WIREFRAME_HIDDEN_REMOVED || any(s.areas < s.setup.xyz);
 }
 
+@smooth
 fn wireframe_surface(surface: Surface, p: Wireframe) -> Surface {
     var s = surface;
     let distance = min(min(s.edge_distance_px.x, s.edge_distance_px.y), s.edge_distance_px.z);

@@ -1,13 +1,18 @@
-// Wobble: a wave runs through the model and sways it, normals and all.
+// Wobble: a wave runs through the model and sways it.
 //@ use lib/vertex
 //@ use lib/angle
 
 struct Wobble {
-    direction: vec4f,
-    sway: vec4f,
-    amplitude_m: f32,
-    wavelength_m: f32,
-    phase_turns: f32,
+    /// Direction in which the wave runs, of any length.
+    @point(0, 1, 0) @hard(-1000, 1000) @soft(-1, 1) direction: vec4f,
+    /// Direction in which it sways the model, of any length.
+    @point(1, 0, 0) @hard(-1000, 1000) @soft(-1, 1) sway: vec4f,
+    /// How far it sways to either side.
+    @range(0, 0.5, 0.08) @hard(0, 1000) @unit(m) amplitude_m: f32,
+    /// Distance from one crest to the next.
+    @range(0.05, 10, 1) @hard(0.001, 1e6) @unit(m) @log wavelength_m: f32,
+    /// How far the wave has run, turns of one wavelength; 1 is 0 again.
+    @range(0, 1, 0) @unit(turns) phase_turns: f32,
 }
 
 fn wobble(vertex: Vertex, p: Wobble) -> Vertex {

@@ -1,12 +1,17 @@
-// X-ray: the average of all layers on a pixel instead of the nearest, in linear light and in whole numbers.
+// X-ray: averages all layers of a pixel in whole numbers, so that no order shows.
 //@ use lib/surface
 
 struct Xray {
-    layers: u32,
-    window: u32,
-    weight: u32,
-    opacity: f32,
-    bits: u32,
+    /// Which layers count: all, or those within a window behind the front one.
+    @choice(all, window) layers: u32,
+    /// Depth of the window in thousandths: of the front's distance, or of the scene's depth where all rays are parallel.
+    @range(0, 400, 20) @hard(0, 4000) @unit(‰) @when(layers, window) window: u32,
+    /// Which layers have more weight.
+    @choice(equal, facing, grazing, near) weight: u32,
+    /// Fraction of the light behind it that a layer of full weight stops; at 1 the background is hidden.
+    @range(0, 1, 1) opacity: f32,
+    /// Bits per channel in the sums to begin with; fewer are taken where more layers must fit.
+    @choice(auto, 16, 12, 10, 8) bits: u32,
 }
 
 // Weight of a layer: 1 where all count alike, else 1 to 255.

@@ -3,7 +3,7 @@
 
 use super::{args::Common, error::CliError, files, streams::Streams};
 use crate::{
-    effects::{EnabledEffect, Stack, lambert},
+    effects::{Effect, EnabledEffect, Stack},
     params::legible_line,
     preset::Preset,
     preset_file::{self, GalleryEntry, PresetError, PresetFile},
@@ -57,7 +57,7 @@ pub fn open_alone(common: &Common, look: &str) -> Result<PresetFile, CliError> {
 pub fn open_bare(common: &Common, what: &str) -> Result<PresetFile, CliError> {
     let mut bare = read(common, what)?;
     let mut stack = Stack::default();
-    stack.enable(&lambert::EFFECT);
+    stack.enable(Effect::named("lambert"));
     bare.preset = Preset {
         scene: bare.preset.scene,
         stack,

@@ -109,7 +109,7 @@ pub fn run(common: &Common, args: &Verify, streams: &mut Streams) -> Result<Exit
         let names = judged_by_own_text(&preset_file.preset).join(", ");
         if !names.is_empty() {
             streams.note(&format!(
-                "{}: {names} judged by its own text in f64, everything else by an independent twin",
+                "{}: {names} judged by its own text in f64, the rasterizer by an independent twin",
                 preset_file.id
             ));
         }

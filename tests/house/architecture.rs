@@ -13,8 +13,8 @@ const ORDER: &[(&str, &[&str])] = &[
     (
         "crates/model",
         &[
-            "work", "math", "legible", "frame", "accuracy", "measure", "scene", "params",
-            "effects", "preset",
+            "work", "math", "legible", "frame", "accuracy", "measure", "scene", "shaders",
+            "params", "effects", "preset",
         ],
     ),
     ("crates/kernels", &["shader", "plan"]),

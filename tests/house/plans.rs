@@ -17,16 +17,14 @@ use rasterlab::{
 };
 
 fn planned(scene: &str, clip: &str, effects: &[&str], tier: Tier) -> (Plan, Stack) {
-    planned_for(
-        &Caps::ALL,
-        scene,
-        clip,
-        effects,
-        AccuracyRequest {
-            tier,
-            ..AccuracyRequest::default()
-        },
-    )
+    planned_for(&Caps::ALL, scene, clip, effects, at_tier(tier))
+}
+
+fn at_tier(tier: Tier) -> AccuracyRequest {
+    AccuracyRequest {
+        tier,
+        ..AccuracyRequest::default()
+    }
 }
 
 fn planned_for(
@@ -36,12 +34,8 @@ fn planned_for(
     effects: &[&str],
     request: AccuracyRequest,
 ) -> (Plan, Stack) {
-    let stack = Stack(
-        effects
-            .iter()
-            .map(|name| EnabledEffect::new(Effect::find(name).expect("an effect")))
-            .collect(),
-    );
+    let enabled = |name: &&str| EnabledEffect::new(Effect::find(name).expect("an effect"));
+    let stack = Stack(effects.iter().map(enabled).collect());
     let playback = ClipPlayback {
         clip: clip.into(),
         ..ClipPlayback::default()
@@ -57,90 +51,86 @@ fn planned_for(
     let draws = stack.draws(&scene, &view).expect("a small scene");
     let traits = StackTraits::of(&stack, &request).expect("no two of a slot");
     let needs = Arc::new(Needs::of(&scene, &draws, &view));
-    (
-        plan(&needs, &traits, caps, &caps.tuning(), &request).expect("a plan"),
-        stack,
-    )
+    let plan = plan(&needs, &traits, caps, &caps.tuning(), &request);
+    (plan.expect("a plan"), stack)
 }
 
 /// A tier where packed32 was measured to take so much of the time without.
 fn measured(tier: Tier, packed32: f64) -> AccuracyRequest {
     let default = AccuracyOptions::default();
     let mut measured = MeasuredCosts::default();
-    measured.learn(&[
-        (default, 10.0),
-        (
-            AccuracyOptions {
-                visibility: Visibility::Packed32,
-                ..default
-            },
-            10.0 * packed32,
-        ),
-    ]);
+    let packed = AccuracyOptions {
+        visibility: Visibility::Packed32,
+        ..default
+    };
+    measured.learn(&[(default, 10.0), (packed, 10.0 * packed32)]);
     AccuracyRequest {
-        tier,
         measured,
-        ..AccuracyRequest::default()
+        ..at_tier(tier)
     }
 }
 
 #[test]
 fn what_was_measured_decides_which_option_is_cheaper_and_the_tolerance_whether_it_may_be_taken() {
     let visibility = |caps: &Caps, request| {
-        planned_for(caps, "teapot?tess=4", "", &["lambert"], request)
-            .0
-            .key
-            .options
-            .visibility
+        let (plan, _) = planned_for(caps, "teapot?tess=4", "", &["lambert"], request);
+        plan.key.options.visibility
     };
-    let unmeasured = AccuracyRequest {
-        tier: Tier::Draft,
-        ..AccuracyRequest::default()
-    };
-    assert_eq!(
-        visibility(&Caps::ALL, unmeasured),
-        Visibility::Packed64,
-        "a card gains nothing as a rule"
-    );
-    assert_eq!(
-        visibility(&Caps::ALL, measured(Tier::Draft, 0.8)),
-        Visibility::Packed32
-    );
-    assert_eq!(
-        visibility(&Caps::ALL, measured(Tier::Draft, 0.98)),
-        Visibility::Packed64,
-        "that may be noise"
-    );
-    assert_eq!(
-        visibility(&Caps::ALL, measured(Tier::Draft, 1.3)),
-        Visibility::Packed64
-    );
-    for tier in [Tier::Precise, Tier::Reference, Tier::Strict] {
-        assert_eq!(
-            visibility(&Caps::ALL, measured(tier, 0.1)),
-            Visibility::Packed64,
-            "{}",
-            tier.name()
-        );
-    }
-    // What was measured elsewhere no longer counts.
     let software = Caps {
         software: true,
         ..Caps::ALL
     };
-    assert_eq!(visibility(&software, unmeasured), Visibility::Packed32);
-    assert_eq!(
-        visibility(&software, measured(Tier::Draft, 1.0)),
-        Visibility::Packed64
-    );
-
-    let (plan, _) = planned_for(
-        &Caps::ALL,
-        "teapot?tess=4",
-        "",
-        &["lambert"],
-        measured(Tier::Draft, 0.8),
-    );
+    let (card, packed64, packed32) = (Caps::ALL, Visibility::Packed64, Visibility::Packed32);
+    for (what, caps, request, wanted) in [
+        (
+            "a card gains nothing as a rule",
+            &card,
+            at_tier(Tier::Draft),
+            packed64,
+        ),
+        ("it is cheaper", &card, measured(Tier::Draft, 0.8), packed32),
+        (
+            "that may be noise",
+            &card,
+            measured(Tier::Draft, 0.98),
+            packed64,
+        ),
+        ("it is dearer", &card, measured(Tier::Draft, 1.3), packed64),
+        (
+            "it is not allowed",
+            &card,
+            measured(Tier::Precise, 0.1),
+            packed64,
+        ),
+        (
+            "it is not allowed",
+            &card,
+            measured(Tier::Reference, 0.1),
+            packed64,
+        ),
+        (
+            "it is not allowed",
+            &card,
+            measured(Tier::Strict, 0.1),
+            packed64,
+        ),
+        (
+            "software gains as a rule",
+            &software,
+            at_tier(Tier::Draft),
+            packed32,
+        ),
+        (
+            "what was measured elsewhere no longer counts",
+            &software,
+            measured(Tier::Draft, 1.0),
+            packed64,
+        ),
+    ] {
+        assert_eq!(visibility(caps, request), wanted, "{what}");
+    }
+    let request = measured(Tier::Draft, 0.8);
+    let (plan, _) = planned_for(&Caps::ALL, "teapot?tess=4", "", &["lambert"], request);
     let why = plan.reason(&AXES[Visibility::AXIS]).expect("a reason");
     assert!(
         why.starts_with("packed32: 0.80 of the default's time as measured here"),
@@ -184,18 +174,12 @@ fn an_axis_has_a_reason_where_it_decides_about_something() {
 fn the_same_request_gives_the_same_plan_whichever_plan_it_starts_from() {
     let (precise, stack) = planned("teapot?tess=4", "", &["lambert"], Tier::Precise);
     let under = |tier: Tier| {
-        let request = AccuracyRequest {
-            tier,
-            ..AccuracyRequest::default()
-        };
         precise
-            .under(&stack, &Caps::ALL.tuning(), &request)
+            .under(&stack, &Caps::ALL.tuning(), &at_tier(tier))
             .expect("a plan")
     };
-    assert_eq!(
-        under(Tier::Strict),
-        planned("teapot?tess=4", "", &["lambert"], Tier::Strict).0
-    );
+    let (strict, _) = planned("teapot?tess=4", "", &["lambert"], Tier::Strict);
+    assert_eq!(under(Tier::Strict), strict);
     let draft = under(Tier::Draft).prediction;
     assert!(
         draft.wrong_ppm <= Tier::Draft.tolerance().wrong_ppm,

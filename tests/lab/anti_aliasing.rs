@@ -1,15 +1,9 @@
 //! Promise: anti-aliasing is chosen in the top bar, draws the oracle's averaged picture, and is
 //! saved only where it was chosen.
 
-use eframe::egui::Role;
 use rasterlab::{accuracy::RenderScale, oracle, preset_file};
 
 use crate::harness::*;
-
-fn choose(lab: &mut Lab, entry: &str) {
-    click(lab, Role::ComboBox, "Anti-aliasing");
-    click(lab, Role::Button, entry);
-}
 
 fn pinned(lab: &Lab) -> Option<RenderScale> {
     lab.state().preset_file().preset.accuracy.pins.option()
@@ -59,13 +53,13 @@ fn two_by_two_samples_are_the_oracles_averages_and_one_step() {
         "a CPU adapter draws a sample for each pixel, a card four"
     );
 
-    choose(&mut lab, "off");
+    choose(&mut lab, "Anti-aliasing", "off");
     assert_eq!(
         (pinned(&lab), lab.state().drawn_scale()),
         (Some(RenderScale::Full), Some(RenderScale::Full))
     );
     let jagged = wrong_pixels(&mut lab, 2.0);
-    choose(&mut lab, "2×2");
+    choose(&mut lab, "Anti-aliasing", "2×2");
     assert_eq!(
         (pinned(&lab), lab.state().drawn_scale()),
         (Some(RenderScale::Double), Some(RenderScale::Double))
@@ -80,10 +74,11 @@ fn two_by_two_samples_are_the_oracles_averages_and_one_step() {
 
     undo(&mut lab);
     assert_eq!(pinned(&lab), Some(RenderScale::Full));
-    choose(&mut lab, "4×4");
+    choose(&mut lab, "Anti-aliasing", "4×4");
     assert_eq!(pinned(&lab), Some(RenderScale::Quadruple));
     choose(
         &mut lab,
+        "Anti-aliasing",
         &format!(
             "Automatic ({})",
             if automatic == RenderScale::Full {

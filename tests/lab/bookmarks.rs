@@ -1,7 +1,7 @@
 //! Promise: the inspector keeps cameras under names, goes back to them, renames and removes them,
 //! each as one undo step, and keys and the palette reach them, too.
 
-use eframe::egui::{Key, Modifiers, Role};
+use egui::{Key, Modifiers, Role};
 use egui_kittest::kittest::Queryable as _;
 use rasterlab::preset::Preset;
 
@@ -53,7 +53,7 @@ fn a_camera_is_kept_found_again_renamed_and_removed() {
         field.focus();
         lab.run_steps(2);
         press(&mut lab, Modifiers::COMMAND, Key::A);
-        lab.event(eframe::egui::Event::Text(name.into()));
+        lab.event(egui::Event::Text(name.into()));
         lab.run_steps(2);
         click(&mut lab, Role::Button, "Rename");
         let refused = lab.query_by_label_contains("Another bookmark is called");
@@ -68,7 +68,7 @@ fn a_camera_is_kept_found_again_renamed_and_removed() {
     assert_eq!(names(&lab), ["view 1", "above"]);
 
     press(&mut lab, Modifiers::COMMAND, Key::K);
-    lab.event(eframe::egui::Event::Text("camera: view 1".into()));
+    lab.event(egui::Event::Text("camera: view 1".into()));
     lab.run_steps(2);
     press(&mut lab, Modifiers::NONE, Key::Enter);
     assert_eq!(eye(&lab), [0.0, 0.0, 6.0]);

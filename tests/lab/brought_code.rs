@@ -1,7 +1,7 @@
 //! Promise: the code that a preset brings runs in the window only after the user has allowed it.
 //! Until then scene and picture stay.
 
-use eframe::egui::{self, Role};
+use egui::Role;
 use egui_kittest::kittest::Queryable as _;
 use rasterlab::preset_file::{self, PresetFile};
 
@@ -18,12 +18,6 @@ fn inked(folder: &std::path::Path) -> PresetFile {
         "schema = 2\nname = \"Mine\"\n[scene]\nbuiltin = \"knot\"\n[effects.lambert]\n[effects.ink]\n",
     );
     preset_file::load(&folder.join("mine.toml")).expect("a preset")
-}
-
-fn paste(lab: &mut Lab, text: &str) {
-    lab.event(egui::Event::Paste(text.into()));
-    lab.run_steps(3);
-    settle(lab);
 }
 
 fn has_ink(lab: &Lab) -> bool {
@@ -144,7 +138,7 @@ fn a_preset_whose_file_comes_to_bring_code_is_asked_about() {
         return;
     };
     write(&other.path().join("mine.toml"), &shared);
-    crate::live::wait_for(&mut lab, "the question is asked", is_asked);
+    wait_for(&mut lab, "the question is asked", is_asked);
     assert!(!has_ink(&lab));
     click(&mut lab, Role::Button, "Open without these effects");
     assert!(

@@ -1,13 +1,13 @@
 //! Promise: the text of an effect of one's own is edited beside the picture: it is compiled as it
 //! is typed, its faults are told at their line, and the file changes only when it is saved.
 
-use eframe::egui::{Key, Modifiers, Role};
+use egui::{Key, Modifiers, Role};
 use egui_kittest::kittest::Queryable as _;
 use rasterlab::preset_file::Folders;
 
 use crate::{
     harness::*,
-    live::{INK, wait_for, write},
+    live::{INK, write},
 };
 
 const PRESET: &str = "schema = 2\n[scene]\nbuiltin = \"teapot\"\n[effects.ink]\n";

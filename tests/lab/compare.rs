@@ -1,7 +1,7 @@
 //! Promise: the comparison shows a reference or a kept preset beside the live one, as a wipe, side
 //! by side, or as their difference.
 
-use eframe::egui::{Key, Modifiers, Role, vec2};
+use egui::{Key, Modifiers, Role, vec2};
 use egui_kittest::kittest::Queryable as _;
 
 use crate::harness::*;

@@ -1,31 +1,12 @@
 //! Promise: files are found and saved without a service of the desktop: paths are completed, recent
 //! files are listed, and a save that fails keeps its dialog with the path and the reason.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
-use eframe::egui::{Event, Key, Modifiers, Role};
+use egui::{Key, Modifiers, Role};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 
 use crate::{files::tiny_glb, harness::*};
-
-fn type_text(lab: &mut Lab, text: &str) {
-    lab.event(Event::Text(text.into()));
-    lab.run_steps(3);
-}
-
-/// Steps until `reached`.
-fn wait_for(lab: &mut Lab, what: &str, reached: impl Fn(&Lab) -> bool) {
-    let patience = Instant::now() + Duration::from_secs(60);
-    while !reached(lab) {
-        assert!(
-            Instant::now() < patience,
-            "{what}\n{}",
-            lab.state().log_text()
-        );
-        lab.step();
-        std::thread::sleep(Duration::from_millis(5));
-    }
-}
 
 fn path_of(lab: &Lab) -> String {
     lab.get_by_role_and_label(Role::TextInput, "Path")

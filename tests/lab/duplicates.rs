@@ -4,10 +4,10 @@
 
 use std::path::Path;
 
-use eframe::egui::{self, Role};
+use egui::Role;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 
-use crate::{harness::*, live::wait_for};
+use crate::harness::*;
 
 const PRESET: &str = "schema = 2\n[scene]\nbuiltin = \"teapot\"\n[effects.lambert]\n[effects.toon]\nsteps = 5\n[effects.outline]\n[effects.stipple]\n\
     [animation.toon]\nrim_width = [{ time_s = 0.0, value = 0.25 }, { time_s = 1.0, value = 0.5 }]\n";
@@ -25,11 +25,6 @@ fn names(lab: &Lab) -> Vec<String> {
         .iter()
         .map(|enabled| enabled.effect.name.clone())
         .collect()
-}
-
-fn type_text(lab: &mut Lab, text: &str) {
-    lab.event(egui::Event::Text(text.into()));
-    lab.run_steps(3);
 }
 
 fn written(folder: &Path) -> Vec<String> {

@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use eframe::egui::{Event, Key, Modifiers, OutputCommand, Role};
+use egui::{Event, Key, Modifiers, OutputCommand, Role};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use rasterlab::preset_file::Folders;
 
@@ -195,7 +195,7 @@ fn effects_are_dragged_to_their_place_in_the_stack() {
     };
     let (from, to) = (
         at(&lab, "Drag toon"),
-        at(&lab, "Drag lambert") - eframe::egui::vec2(0.0, 10.0),
+        at(&lab, "Drag lambert") - egui::vec2(0.0, 10.0),
     );
     drag(&mut lab, from, to);
     assert_eq!(
@@ -204,7 +204,7 @@ fn effects_are_dragged_to_their_place_in_the_stack() {
     );
     let (from, to) = (
         at(&lab, "Drag toon"),
-        at(&lab, "Drag outline") + eframe::egui::vec2(0.0, 14.0),
+        at(&lab, "Drag outline") + egui::vec2(0.0, 14.0),
     );
     drag(&mut lab, from, to);
     assert_eq!(stack(&lab), ["lambert", "outline", "toon"]);
@@ -222,7 +222,7 @@ fn effects_are_dragged_to_their_place_in_the_stack() {
     click(&mut lab, Role::Button, "Effects");
     let (from, to) = (
         at(&lab, "Effect facet"),
-        at(&lab, "Drag outline") - eframe::egui::vec2(0.0, 10.0),
+        at(&lab, "Drag outline") - egui::vec2(0.0, 10.0),
     );
     drag(&mut lab, from, to);
     assert_eq!(

@@ -6,7 +6,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use eframe::egui::{self, Key, Modifiers, Role, vec2};
+use egui::{self, Key, Modifiers, Role, vec2};
 use egui_kittest::kittest::Queryable as _;
 use rasterlab::{
     accuracy::RenderScale,

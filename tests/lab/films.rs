@@ -7,7 +7,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use eframe::egui::{self, Key, Modifiers, Role};
+use egui::{self, Key, Modifiers, Role};
 use egui_kittest::kittest::Queryable as _;
 use rasterlab::preset_file::{self, Folders};
 

@@ -7,7 +7,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use eframe::egui::{Pos2, Role, Shape};
+use egui::{Pos2, Role, Shape};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use rasterlab::app::Devices;
 

@@ -8,7 +8,7 @@ use rasterlab::{oracle, preset_file};
 
 use crate::{
     harness::*,
-    live::{INK, wait_for, write},
+    live::{INK, write},
 };
 
 const PRESET: &str = "schema = 2\nname = \"Mine\"\n[scene]\nbuiltin = \"teapot\"\n[effects.ink]\n[output]\nsize = [64, 48]\n[test]\n";

@@ -1,7 +1,7 @@
 //! Promise: box, axes and grid lie where the camera sees them, and a measured distance is that of
 //! the points of the model under both clicks.
 
-use eframe::egui::{Event, Key, Modifiers, PointerButton, Pos2, Rect, Role, pos2};
+use egui::{Event, Key, Modifiers, PointerButton, Pos2, Rect, Role, pos2};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use glam::DVec2;
 use rasterlab::{preset_file, scene::pick};

@@ -1,7 +1,7 @@
 //! Promise: points of effects and the direction of the light are dragged in the picture, and follow
 //! the pointer.
 
-use eframe::egui::{Event, Key, Modifiers, Pos2, Role, vec2};
+use egui::{Event, Key, Modifiers, Pos2, Role, vec2};
 use egui_kittest::kittest::Queryable as _;
 use glam::DVec3;
 

@@ -10,18 +10,15 @@ use std::{
     time::{Duration, Instant},
 };
 
-use eframe::{
-    egui::{
-        Event, Key, Modifiers, Pos2, Rect, Role, TexturesDelta, ThemePreference,
-        accesskit::Toggled, mutex::RwLock,
-    },
-    egui_wgpu::{self, RenderState, RendererOptions, ScreenDescriptor, WgpuConfiguration},
-    wgpu,
+use egui::{
+    Event, Key, Modifiers, Pos2, Rect, Role, TexturesDelta, ThemePreference, accesskit::Toggled,
+    mutex::RwLock,
 };
 use egui_kittest::{
     Harness, Node, TestRenderer,
     kittest::{NodeT as _, Queryable as _},
 };
+use egui_wgpu::{RenderState, RendererOptions, ScreenDescriptor, WgpuConfiguration};
 use rasterlab::{
     app::{App, Devices, Options, Painter, wgpu_setup},
     gpu::{Gpu, device::AdapterChoice},
@@ -406,6 +403,38 @@ pub fn click(lab: &mut Lab, role: Role, label: &str) {
     lab.run_steps(3);
     lab.get_by_role_and_label(role, label).click();
     lab.run_steps(3);
+    settle(lab);
+}
+
+/// Chooses `entry` of the menu of this name.
+pub fn choose(lab: &mut Lab, menu: &str, entry: &str) {
+    click(lab, Role::ComboBox, menu);
+    click(lab, Role::Button, entry);
+}
+
+pub fn type_text(lab: &mut Lab, text: &str) {
+    lab.event(Event::Text(text.into()));
+    lab.run_steps(3);
+}
+
+pub fn paste(lab: &mut Lab, text: &str) {
+    lab.event(Event::Paste(text.into()));
+    lab.run_steps(3);
+    settle(lab);
+}
+
+/// Steps until `reached`, and then until everything is at rest.
+pub fn wait_for(lab: &mut Lab, what: &str, reached: impl Fn(&Lab) -> bool) {
+    let patience = Instant::now() + Duration::from_secs(60);
+    while !reached(lab) {
+        lab.step();
+        assert!(
+            Instant::now() < patience,
+            "{what}: it did not happen\n{}",
+            lab.state().log_text()
+        );
+        std::thread::sleep(Duration::from_millis(5));
+    }
     settle(lab);
 }
 

@@ -1,7 +1,7 @@
 //! Promise: in the inspector every value has a control with a name, a drag is one undo step, and
 //! effects and clips are switched on and off.
 
-use eframe::egui::{self, Key, Modifiers, Role, vec2};
+use egui::{self, Key, Modifiers, Role, vec2};
 use egui_kittest::kittest::Queryable as _;
 
 use crate::harness::*;

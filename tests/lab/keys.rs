@@ -3,7 +3,7 @@
 
 use std::time::{Duration, Instant};
 
-use eframe::egui::{Event, Key, Modifiers, Role};
+use egui::{Event, Key, Modifiers, Role};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 
 use crate::harness::*;
@@ -72,7 +72,7 @@ fn words_typed_into_the_cheat_sheet_search_it_and_do_nothing_else() {
 
     // A click beside the field does not make typing dangerous, and F1 and Escape close the sheet.
     let view = lab.get_by_label("Picture").rect();
-    lab.drop_at(view.left_bottom() + eframe::egui::vec2(30.0, -60.0));
+    lab.drop_at(view.left_bottom() + egui::vec2(30.0, -60.0));
     lab.run_steps(3);
     send(&mut lab, typed("r"));
     assert_eq!(

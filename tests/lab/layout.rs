@@ -2,7 +2,7 @@
 //! boxes; a click on a slider counts however short it is; a number that cannot be taken is said;
 //! Escape closes what is open, the innermost first.
 
-use eframe::egui::{Event, Key, Modifiers, PointerButton, Pos2, Rect, Role, vec2};
+use egui::{Event, Key, Modifiers, PointerButton, Pos2, Rect, Role, vec2};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use rasterlab::preset_file::Folders;
 

@@ -6,7 +6,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use eframe::egui::{Key, Modifiers, Role};
+use egui::{Key, Modifiers, Role};
 use egui_kittest::kittest::Queryable as _;
 
 use crate::{
@@ -24,21 +24,6 @@ const PRESET: &str = "schema = 2\n[scene]\nbuiltin = \"teapot\"\n[effects.ink]\n
 pub fn write(path: &Path, text: &str) {
     std::fs::create_dir_all(path.parent().expect("a folder")).expect("a folder");
     std::fs::write(path, text).expect("a file");
-}
-
-/// Steps until `reached`, and then until everything is at rest.
-pub fn wait_for(lab: &mut Lab, what: &str, reached: impl Fn(&Lab) -> bool) {
-    let patience = Instant::now() + Duration::from_secs(60);
-    while !reached(lab) {
-        lab.step();
-        assert!(
-            Instant::now() < patience,
-            "{what}: it did not happen\n{}",
-            lab.state().log_text()
-        );
-        std::thread::sleep(Duration::from_millis(5));
-    }
-    settle(lab);
 }
 
 fn count(lab: &Lab, text: &str) -> usize {
@@ -216,7 +201,7 @@ fn values_are_kept_by_name_when_parameters_come_and_go() {
     let rail = slider(&lab, "ink.d").rect();
     drag(
         &mut lab,
-        rail.left_center() + eframe::egui::vec2(8.0, 0.0),
+        rail.left_center() + egui::vec2(8.0, 0.0),
         rail.right_center(),
     );
     assert!(value(&lab, "ink", "d")[0] > 6.0);
@@ -289,14 +274,10 @@ fn a_preset_that_is_edited_on_disk_is_reloaded_and_unsaved_changes_are_asked_abo
     let rail = slider(&lab, "facet.amount").rect();
     drag(
         &mut lab,
-        rail.left_center() + eframe::egui::vec2(8.0, 0.0),
+        rail.left_center() + egui::vec2(8.0, 0.0),
         rail.center(),
     );
-    press(
-        &mut lab,
-        eframe::egui::Modifiers::COMMAND,
-        eframe::egui::Key::S,
-    );
+    press(&mut lab, egui::Modifiers::COMMAND, egui::Key::S);
     for _ in 0..100 {
         lab.step();
         std::thread::sleep(Duration::from_millis(5));
@@ -309,7 +290,7 @@ fn a_preset_that_is_edited_on_disk_is_reloaded_and_unsaved_changes_are_asked_abo
 
 #[test]
 fn saving_never_overwrites_what_another_program_wrote_unasked_and_both_can_be_merged() {
-    use eframe::egui::{Key, Modifiers};
+    use egui::{Key, Modifiers};
     let folder = tempfile::tempdir().expect("a temporary folder");
     let file = folder.path().join("mine.toml");
     let text = "schema = 2\nname = \"Mine\"\n[scene]\nbuiltin = \"teapot\"\n[effects.facet]\namount = 0.25\n[effects.lambert]\n";
@@ -320,8 +301,8 @@ fn saving_never_overwrites_what_another_program_wrote_unasked_and_both_can_be_me
         let rail = slider(lab, "facet.amount").rect();
         drag(
             lab,
-            rail.left_center() + eframe::egui::vec2(8.0, 0.0),
-            rail.left_center() + eframe::egui::vec2(to * rail.width(), 0.0),
+            rail.left_center() + egui::vec2(8.0, 0.0),
+            rail.left_center() + egui::vec2(to * rail.width(), 0.0),
         );
     };
     let read = || std::fs::read_to_string(&file).expect("the preset");
@@ -420,15 +401,15 @@ fn a_new_effect_is_written_beside_the_preset_and_enabled() {
     let field = lab.get_by_role_and_label(Role::TextInput, "Name");
     field.focus();
     lab.step();
-    lab.event(eframe::egui::Event::Text("fog".into()));
+    lab.event(egui::Event::Text("fog".into()));
     lab.run_steps(3);
     click(&mut lab, Role::Button, "Create");
     assert!(has_badge(&lab, "There is an effect fog already."));
-    lab.event(eframe::egui::Event::Text("gy".into()));
+    lab.event(egui::Event::Text("gy".into()));
     lab.run_steps(3);
     lab.get_by_role_and_label(Role::TextInput, "Name").focus();
     lab.step();
-    lab.event(eframe::egui::Event::Text("gy".into()));
+    lab.event(egui::Event::Text("gy".into()));
     lab.run_steps(3);
     click(&mut lab, Role::Button, "Create");
     let written: Vec<_> = std::fs::read_dir(folder.path().join("effects"))
@@ -561,7 +542,7 @@ fn shaders_of_a_folder_are_reloaded() {
 
 #[test]
 fn of_two_windows_on_one_preset_the_second_to_save_asks() {
-    use eframe::egui::{Key, Modifiers, vec2};
+    use egui::{Key, Modifiers, vec2};
     let folder = tempfile::tempdir().expect("a temporary folder");
     let file = folder.path().join("mine.toml");
     let text = "schema = 2\nname = \"Mine\"\n[scene]\nbuiltin = \"teapot\"\n[effects.facet]\namount = 0.25\n[effects.lambert]\n";

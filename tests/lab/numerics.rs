@@ -1,12 +1,12 @@
 //! Promise: the window says how far f32 leads an effect of the user's own astray, and where; and
 //! which effect and parameter made NaN.
 
-use eframe::egui::{Key, Modifiers, Role};
+use egui::{Key, Modifiers, Role};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 
 use crate::{
     harness::*,
-    live::{INK, wait_for, write},
+    live::{INK, write},
 };
 
 const PRESET: &str =

@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use eframe::egui::{Event, Role};
+use egui::Role;
 use egui_kittest::kittest::Queryable as _;
 use rasterlab::{
     preset::SceneSource,
@@ -21,12 +21,6 @@ fn shows(lab: &Lab, model: &Path) -> bool {
 
 fn is_asked(lab: &Lab) -> bool {
     lab.query_by_label("Open its model too?").is_some()
-}
-
-fn paste(lab: &mut Lab, text: &str) {
-    lab.event(Event::Paste(text.into()));
-    lab.run_steps(3);
-    settle(lab);
 }
 
 /// A preset of the model in `models`, and a picture of it in another folder.
@@ -125,7 +119,7 @@ fn orbiting_is_no_unsaved_change() {
     drag(
         &mut lab,
         view.center(),
-        view.center() + eframe::egui::vec2(40.0, 10.0),
+        view.center() + egui::vec2(40.0, 10.0),
     );
     assert_ne!(lab.state().preset_file().preset.camera, camera);
     assert!(lab.query_by_label("unsaved").is_none());

@@ -2,7 +2,7 @@
 //! options; Enter carries out what is selected, Escape nothing, and no key that is typed there is a
 //! shortcut.
 
-use eframe::egui::{Event, Key, Modifiers, Role};
+use egui::{Event, Key, Modifiers, Role};
 use egui_kittest::{
     Node,
     kittest::{NodeT as _, Queryable as _},

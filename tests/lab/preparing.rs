@@ -5,7 +5,7 @@
 
 use std::time::{Duration, Instant};
 
-use eframe::egui::Pos2;
+use egui::Pos2;
 
 use crate::harness::*;
 

@@ -1,10 +1,10 @@
 //! Promise: wrong and doubtful pixels are gone through one by one, each ringed, enlarged and told
 //! why it shows what it shows.
 
-use eframe::egui::{Key, Modifiers, Role};
+use egui::{Key, Modifiers, Role};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 
-use crate::{harness::*, live::wait_for};
+use crate::harness::*;
 
 fn label_of(lab: &Lab, text: &str) -> Option<String> {
     lab.query_all_by_label_contains(text)
@@ -52,7 +52,7 @@ fn next_and_previous_go_through_the_pixels_of_the_overlays() {
     assert!(lab.query_by_label("64 \u{d7}").is_some());
     // The middle of the loupe is the pixel that is told of, beside it lies another.
     let loupe = lab.get_by_role_and_label(Role::Image, &pixels).rect();
-    let beside = loupe.center() + eframe::egui::vec2(64.0, 0.0);
+    let beside = loupe.center() + egui::vec2(64.0, 0.0);
     lab.drag_at(beside);
     lab.step();
     lab.drop_at(beside);

@@ -2,17 +2,14 @@
 //! reject them, only the oracle's picture becomes a golden, and the queue comes back at the next
 //! start.
 
-use eframe::egui::{Key, Modifiers, Role};
+use egui::{Key, Modifiers, Role};
 use egui_kittest::kittest::Queryable as _;
 use rasterlab::{
     golden,
     preset_file::{self, Folders, golden_paths},
 };
 
-use crate::{
-    harness::*,
-    live::{wait_for, write},
-};
+use crate::{harness::*, live::write};
 
 const PRESET: &str = "schema = 2\nname = \"Knot\"\n[scene]\nbuiltin = \"knot?tess=3\"\n[effects.lambert]\n[output]\nsize = [64, 48]\n[test]\n";
 

@@ -1,7 +1,7 @@
 //! Promise: the parts that an effect changes are chosen in the inspector, from a list or by a click
 //! on the model; every choice is a step of undo, and a part that the scene does not have is said.
 
-use eframe::egui::{self, Key, Modifiers, Role};
+use egui::{self, Key, Modifiers, Role};
 use egui_kittest::kittest::Queryable as _;
 
 use crate::harness::*;
@@ -17,11 +17,6 @@ fn on(lab: &Lab, effect: &str) -> String {
         .unwrap_or_else(|| panic!("{effect} is off"))
         .on
         .to_string()
-}
-
-fn type_text(lab: &mut Lab, text: &str) {
-    lab.event(egui::Event::Text(text.into()));
-    lab.run_steps(3);
 }
 
 #[test]

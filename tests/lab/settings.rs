@@ -4,7 +4,7 @@
 
 use std::path::Path;
 
-use eframe::egui::{Event, Key, Modifiers, Pos2, Rect, Role, Theme, ViewportId, vec2};
+use egui::{Event, Key, Modifiers, Pos2, Rect, Role, Theme, ViewportId, vec2};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use rasterlab::preset_file::Folders;
 
@@ -232,10 +232,10 @@ fn the_open_preset_comes_back_with_its_edits_and_the_command_line_wins() {
     // Discarded edits do not come back.
     lab.input_mut()
         .viewports
-        .entry(eframe::egui::ViewportId::ROOT)
+        .entry(egui::ViewportId::ROOT)
         .or_default()
         .events
-        .push(eframe::egui::ViewportEvent::Close);
+        .push(egui::ViewportEvent::Close);
     lab.run_steps(4);
     click(&mut lab, Role::Button, "Discard");
     drop(lab);
@@ -299,6 +299,8 @@ fn broken_settings_are_one_line_of_the_log_and_the_window_opens() {
     );
     assert_eq!(lab.ctx.theme(), Theme::Dark);
     drop(lab);
+    let aside = std::fs::read_to_string(config.path().join("settings.toml.broken"));
+    assert_eq!(aside.expect("it is kept"), "theme = = \"light\"\n");
     let Some(lab) = lab_at(config.path(), None) else {
         return;
     };

@@ -1,15 +1,10 @@
 //! Promise: a sweep draws one or two parameters as a contact sheet in the window, and a click on a
 //! picture takes its values; random values can be locked, kept near, and gone back to.
 
-use eframe::egui::{Key, Modifiers, Role};
+use egui::{Key, Modifiers, Role};
 use egui_kittest::kittest::Queryable as _;
 
 use crate::harness::*;
-
-fn choose(lab: &mut Lab, menu: &str, entry: &str) {
-    click(lab, Role::ComboBox, menu);
-    click(lab, Role::Button, entry);
-}
 
 #[test]
 fn a_click_on_a_picture_of_the_sheet_takes_its_values_in_one_step() {

@@ -3,7 +3,7 @@
 
 use std::time::{Duration, Instant};
 
-use eframe::egui::{self, Key, Modifiers, Pos2, Rect, Role, Shape};
+use egui::{self, Key, Modifiers, Pos2, Rect, Role, Shape};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use rasterlab::{accuracy::DepthFormat, preset_file::Folders};
 

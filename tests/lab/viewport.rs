@@ -3,7 +3,7 @@
 
 use std::time::Duration;
 
-use eframe::egui::{self, Key, Modifiers, Pos2, Role, vec2};
+use egui::{self, Key, Modifiers, Pos2, Role, vec2};
 use egui_kittest::kittest::Queryable as _;
 use rasterlab::{
     oracle,

@@ -6,7 +6,10 @@ use std::path::{Path, PathBuf};
 
 use rasterlab::{
     effect_files::{read_beside, stem},
-    effects::{Effect, Stack},
+    effects::{
+        Effect, Stack,
+        given::{Moment, words_of_view},
+    },
     measure::Budget,
 };
 
@@ -14,8 +17,9 @@ use super::common::{self, Draws as _, Reach, few_and_all};
 
 /// Most lines of an effect.
 const MOST_LINES: usize = 60;
-/// Effects that are there: ten of images, five with noise, five with a picture.
-const COUNT: usize = 20;
+/// Effects that are there: ten of images, five with noise, five with a picture, five that move with
+/// the clock.
+const COUNT: usize = 25;
 
 /// The effects of the folder.
 fn files() -> Vec<PathBuf> {
@@ -65,6 +69,18 @@ fn every_ported_effect_is_drawn_as_the_oracle_draws_it(reach: Reach) {
         let effect = read.unwrap_or_else(|error| panic!("{error}"));
         let mut stack = plain.clone();
         stack.enable(&effect);
+        let at = |time_s: f64| {
+            let moment = Moment {
+                time_s,
+                range_s: [0.0, 4.0],
+            };
+            let then = stack.clone().with_given(|given| moment.words(given));
+            then.with_given(|given| words_of_view(given, [64, 48], view.eye, view.forward))
+        };
+        if effect.is_given_time() && at(1.3) == at(2.6) {
+            faults.push(format!("{name} does not move"));
+        }
+        let stack = at(1.3);
         let (capture, verdict) = renderer.judged(&scene, &view, &stack, &accuracy);
         if let Err(fault) = verdict.report.within(&budget) {
             faults.push(format!("{name}: {fault}"));

@@ -9,6 +9,7 @@
 //!   asks of them
 //! * [`measure`]: compares frames, summarizes timings
 //! * [`scene`]: meshes as the file has them, cameras, what a scene requires
+//! * [`shaders`]: the WGSL files
 //! * [`params`](mod@params), [`effects`]: one table of parameters per effect, one list of effects,
 //!   their f64 reference
 //! * [`preset`]: the state of a picture, and its animation
@@ -22,4 +23,7 @@ pub mod measure;
 pub mod params;
 pub mod preset;
 pub mod scene;
+pub mod shaders;
 pub mod work;
+
+use rasterlab_evaluator as evaluator;

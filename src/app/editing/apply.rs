@@ -1,6 +1,6 @@
 //! Carries out commands that edit the preset.
 
-use eframe::egui::ViewportCommand;
+use egui::ViewportCommand;
 
 use super::{command::KeyframeEdit, session::UndoState};
 use crate::{

@@ -212,7 +212,7 @@ mod tests {
             .collect()
     }
 
-    fn drawn(stack: &Stack, randomizer: &mut Randomizer) -> Stack {
+    fn draw_values(stack: &Stack, randomizer: &mut Randomizer) -> Stack {
         let mut stack = stack.clone();
         randomizer.randomize(&mut stack, |_, _| false);
         stack
@@ -223,17 +223,17 @@ mod tests {
         for stack in everything() {
             let name = &stack.0[0].effect.name;
             let [mut a, mut b] = [Randomizer::default(), Randomizer::default()];
-            let first = drawn(&stack, &mut a);
-            assert_eq!(first, drawn(&stack, &mut b), "{name}");
-            let second = drawn(&first, &mut a);
+            let first = draw_values(&stack, &mut a);
+            assert_eq!(first, draw_values(&stack, &mut b), "{name}");
+            let second = draw_values(&first, &mut a);
             // One flag alone may well be the same twice.
             let mut further = Randomizer::default();
             let is_varied = (0..24)
-                .map(|_| drawn(&stack, &mut further))
+                .map(|_| draw_values(&stack, &mut further))
                 .any(|other| other != first);
             assert!(is_varied || stack.0[0].effect.fields.is_empty(), "{name}");
             // At 100 % it does not matter where a value was.
-            assert_eq!(second, drawn(&stack, &mut b), "{name}");
+            assert_eq!(second, draw_values(&stack, &mut b), "{name}");
             for enabled in &second.0 {
                 for field in &enabled.effect.fields {
                     let [from, to] = field.soft;
@@ -259,7 +259,7 @@ mod tests {
             };
             let mut from_words_changed = 0;
             for _ in 0..40 {
-                let after = drawn(&stack, &mut randomizer);
+                let after = draw_values(&stack, &mut randomizer);
                 let (before, after) = (&stack.0[0], &after.0[0]);
                 for field in &before.effect.fields {
                     let (was, is) = (field.get(&before.words), field.get(&after.words));
@@ -326,7 +326,7 @@ mod tests {
         let mut stack = Stack(vec![facet]);
         let history: Vec<Stack> = (0..15)
             .map(|_| {
-                stack = drawn(&stack, &mut randomizer);
+                stack = draw_values(&stack, &mut randomizer);
                 stack.clone()
             })
             .collect();

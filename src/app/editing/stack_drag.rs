@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use eframe::egui::{self, DragAndDrop, Pos2, Rect, Stroke, Ui};
+use egui::{self, DragAndDrop, Pos2, Rect, Stroke, Ui};
 
 use crate::{
     app::{

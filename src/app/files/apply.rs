@@ -5,7 +5,7 @@ use std::{
     sync::Arc,
 };
 
-use eframe::egui::ViewportCommand;
+use egui::ViewportCommand;
 
 use super::{
     command::{CodeUse, Manner, Purpose, Side},

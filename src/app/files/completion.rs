@@ -63,7 +63,7 @@ impl Listing {
 }
 
 /// The path that `typed` means: `~` is the home folder.
-pub fn expanded(typed: &str) -> PathBuf {
+pub fn expand_home(typed: &str) -> PathBuf {
     let home = |rest: &str| Some(std::env::home_dir()?.join(rest));
     match typed.strip_prefix('~') {
         Some("") => home(""),
@@ -75,7 +75,7 @@ pub fn expanded(typed: &str) -> PathBuf {
 
 /// The folder whose entries can complete `typed`.
 pub fn folder_of(typed: &str) -> PathBuf {
-    let folder = expanded(&typed[..typed.len() - name_of(typed).len()]);
+    let folder = expand_home(&typed[..typed.len() - name_of(typed).len()]);
     let folder = if folder.as_os_str().is_empty() {
         PathBuf::from(".")
     } else {
@@ -104,7 +104,7 @@ pub fn with_entry(typed: &str, entry: &Entry) -> String {
 
 /// `typed` with as much of its name as all `matches` share; the whole entry if there is one match.
 /// None if that adds nothing.
-pub fn completed(typed: &str, matches: &[&Entry]) -> Option<String> {
+pub fn complete_name(typed: &str, matches: &[&Entry]) -> Option<String> {
     let completed = match matches {
         [] => return None,
         [entry] => with_entry(typed, entry),
@@ -205,7 +205,7 @@ mod tests {
     #[test]
     fn tab_adds_what_all_matches_share_and_a_single_match_whole() {
         let (_folder, listing) = folder();
-        let complete = |typed: &str| completed(typed, &listing.matches(typed, TYPES));
+        let complete = |typed: &str| complete_name(typed, &listing.matches(typed, TYPES));
         assert_eq!(complete("/a/for"), Some("/a/forest.glb".into()));
         assert_eq!(
             complete("z"),
@@ -224,7 +224,7 @@ mod tests {
             is_folder: false,
         };
         let [a, b] = [entry("Ärmel-é.glb"), entry("ärmel-è.glb")];
-        assert_eq!(completed("ä", &[&a, &b]), Some("Ärmel-".into()));
+        assert_eq!(complete_name("ä", &[&a, &b]), Some("Ärmel-".into()));
     }
 
     #[test]
@@ -257,11 +257,11 @@ mod tests {
         );
         if let Some(home) = std::env::home_dir() {
             assert_eq!(
-                (folder_of("~/mod"), expanded("~/x.glb"), expanded("~")),
+                (folder_of("~/mod"), expand_home("~/x.glb"), expand_home("~")),
                 (home.clone(), home.join("x.glb"), home)
             );
         }
-        assert_eq!(expanded("~other/x"), Path::new("~other/x"));
+        assert_eq!(expand_home("~other/x"), Path::new("~other/x"));
     }
 
     #[test]

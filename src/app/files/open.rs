@@ -270,7 +270,7 @@ pub fn cancel_loading(app: &mut App) {
         return;
     };
     if !scene_arrived(app, &key, false) && app.state.session.scenes.shown_for(&key).is_none() {
-        app.state.session.scenes.arrived(key, None);
+        app.state.session.scenes.take_scene(key, None);
     }
     app.notify(Level::Info, "Loading was stopped");
 }
@@ -293,7 +293,10 @@ pub fn take_scene(app: &mut App, key: SceneKey, loaded: Result<Arc<Scene>, Strin
                 app.state.log.add(Level::Warning, text);
             }
             model_reloaded(&mut app.state, &key, Ok(()));
-            app.state.session.scenes.arrived(key.clone(), Some(scene));
+            app.state
+                .session
+                .scenes
+                .take_scene(key.clone(), Some(scene));
             scene_arrived(app, &key, true);
         }
         Err(error) => {
@@ -302,7 +305,7 @@ pub fn take_scene(app: &mut App, key: SceneKey, loaded: Result<Arc<Scene>, Strin
                 return app.notify(Level::Error, error);
             }
             let is_again = model_reloaded(&mut app.state, &key, Err(&error));
-            app.state.session.scenes.arrived(key, None);
+            app.state.session.scenes.take_scene(key, None);
             if !is_again {
                 app.notify(Level::Error, error);
             }

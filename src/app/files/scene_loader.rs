@@ -154,7 +154,7 @@ impl SceneLoader {
     }
 
     /// Takes a scene that was loaded; none if that failed.
-    pub fn arrived(&mut self, key: SceneKey, scene: Option<Arc<Scene>>) {
+    pub fn take_scene(&mut self, key: SceneKey, scene: Option<Arc<Scene>>) {
         self.abandon(&key);
         match scene {
             Some(scene) => {
@@ -223,7 +223,7 @@ mod tests {
         };
         let mut loader = SceneLoader::default();
         for (name, size) in [("a", 200), ("b", 0), ("c", 200), ("d", 200)] {
-            loader.arrived(key(name), scene(size));
+            loader.take_scene(key(name), scene(size));
         }
         loader.forget(MemoryBudget::LEAST);
         assert_eq!(
@@ -231,7 +231,7 @@ mod tests {
             [false, true, true, true],
             "512 MiB of scenes are kept"
         );
-        loader.arrived(key("e"), scene(600));
+        loader.take_scene(key("e"), scene(600));
         loader.forget(MemoryBudget::LEAST);
         assert_eq!(
             ["d", "e"].map(|name| loader.has(&key(name))),
@@ -247,7 +247,7 @@ mod tests {
         assert!(loader.is_loading() && loader.request(&key("a")).is_none());
         assert_eq!(loader.cancel(), Some(key("a")));
         assert!(work.is_canceled() && !loader.is_loading() && loader.cancel().is_none());
-        loader.arrived(key("a"), None);
+        loader.take_scene(key("a"), None);
         assert!(loader.has_failed() && loader.request(&key("a")).is_none());
         assert!(
             !loader.reload(&key("a")).is_canceled(),

@@ -7,8 +7,6 @@ use std::{
     time::{Duration, SystemTime},
 };
 
-use eframe::egui;
-
 use super::system_watch::SystemWatch;
 use crate::{
     effect_files::{Catalog, EffectError},

@@ -11,7 +11,6 @@ use std::{
     time::Duration,
 };
 
-use eframe::egui;
 use web_time::Instant;
 
 use crate::{

@@ -1,6 +1,6 @@
 //! Taking in what jobs have finished that threads do in one way, and a page in another.
 
-use eframe::egui::ColorImage;
+use egui::ColorImage;
 
 use crate::app::{
     App,
@@ -16,7 +16,7 @@ pub fn take_trade(app: &mut App, points: Result<Vec<Point>, String>) {
         points.iter().filter(|point| point.ms.is_some()).count()
     });
     let log = &mut app.state.log;
-    match app.panels.trade.arrived(points) {
+    match app.panels.trade.take_points(points) {
         Some(error) => log.add(Level::Error, error),
         None if timed > 0 => log.add(
             Level::Info,
@@ -28,7 +28,10 @@ pub fn take_trade(app: &mut App, points: Result<Vec<Point>, String>) {
 
 /// Takes the thumbnail of a preset.
 pub fn take_thumbnail(app: &mut App, id: &str, image: Option<ColorImage>) {
-    app.panels.browser.pictures.arrived(&app.ctx, id, image);
+    app.panels
+        .browser
+        .pictures
+        .take_picture(&app.ctx, id, image);
 }
 
 /// Takes the thumbnail of a preset on the user's own scene.
@@ -45,7 +48,7 @@ pub fn take_effect_picture(app: &mut App, effect: &str, image: Option<ColorImage
 
 /// Takes the f32 errors of the user's effects in a picture; none if the measurement was canceled.
 pub fn take_precision(app: &mut App, of: Inputs, measured: Result<Option<Box<Measured>>, String>) {
-    if let Some(error) = app.state.picture.precision.arrived(of, measured) {
+    if let Some(error) = app.state.picture.precision.take_errors(of, measured) {
         app.state.log.add(Level::Error, error);
     }
 }

@@ -8,7 +8,6 @@ use std::{
     time::Duration,
 };
 
-use eframe::egui;
 use js_sys::Uint8Array;
 
 use super::{
@@ -17,7 +16,7 @@ use super::{
         take_effect_picture, take_golden, take_link, take_precision, take_thumbnail,
         take_thumbnail_on, take_trade,
     },
-    landed, worker,
+    land_look, worker,
     worker::{Question, Task, Wish},
 };
 use crate::{
@@ -114,7 +113,7 @@ impl Jobs {
         size: [u32; 2],
     ) {
         self.spawn_idle("thumbnail", async move || {
-            let image = match landed(&look, &own, &scene) {
+            let image = match land_look(&look, &own, &scene) {
                 Some(landed) => picture(&landed, size).await,
                 None => None,
             };

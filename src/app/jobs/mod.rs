@@ -2,7 +2,6 @@
 //! pictures, drawing thumbnails, saving pictures, waiting for file dialogs.
 
 pub mod background;
-pub mod computing;
 pub mod film;
 pub mod finished;
 #[cfg(target_arch = "wasm32")]
@@ -20,9 +19,6 @@ use std::{
     thread::JoinHandle,
 };
 
-use eframe::egui;
-
-use self::computing::{Computing, Count};
 use crate::{
     app::{
         App,
@@ -66,12 +62,17 @@ fn done(take: impl FnOnce(&mut App) + Send + 'static) -> Done {
     Box::new(take)
 }
 
+/// Work under way that keeps the processor busy, for as long as this exists: a picture that is
+/// measured meanwhile would seem slow.
+pub type Computing = Arc<()>;
+
 /// Starts threads and receives their results.
 pub struct Jobs {
     ctx: egui::Context,
     sender: mpsc::Sender<Done>,
     receiver: mpsc::Receiver<Done>,
-    computing: Count,
+    /// Held once more by all work that keeps the processor busy.
+    computing: Computing,
 }
 
 impl Jobs {
@@ -81,7 +82,7 @@ impl Jobs {
             ctx,
             sender,
             receiver,
-            computing: Count::default(),
+            computing: Computing::default(),
         }
     }
 
@@ -93,7 +94,7 @@ impl Jobs {
     /// True while a job keeps the processor busy: times that are measured meanwhile are not those
     /// of a picture at rest.
     pub fn is_computing(&self) -> bool {
-        self.computing.is_any()
+        Arc::strong_count(&self.computing) > 1
     }
 
     /// Starts work that keeps the processor busy.
@@ -238,7 +239,7 @@ impl Jobs {
                     outcome,
                     drawing,
                 };
-                tier_times::arrived(&mut app.state, timed);
+                tier_times::take_times(&mut app.state, timed);
             })
         })
     }
@@ -355,9 +356,9 @@ impl Jobs {
                     let ctx = &app.ctx;
                     match of {
                         CellOf::Sweep { number, index } => {
-                            app.panels.sweep.arrived(ctx, (number, index), picture)
+                            app.panels.sweep.take_picture(ctx, (number, index), picture)
                         }
-                        CellOf::Seed(seed) => app.panels.randomize.arrived(ctx, seed, picture),
+                        CellOf::Seed(seed) => app.panels.randomize.take_picture(ctx, seed, picture),
                     }
                 });
                 // The window may be closed by now; then the picture is dropped.
@@ -409,7 +410,7 @@ impl Jobs {
             memory::give_back();
             let ended = ended.unwrap_or_else(|bug| Err(film::Failure::Other(bug)));
             done(move |app| {
-                if let Some((level, text)) = app.panels.film.arrived(&progress, ended) {
+                if let Some((level, text)) = app.panels.film.take_end(&progress, ended) {
                     app.notify(level, text);
                 }
             })
@@ -419,7 +420,7 @@ impl Jobs {
     /// Counts work on another thread, which keeps the processor busy, for as long as what is
     /// returned exists.
     pub fn busy(&self) -> Computing {
-        self.computing.add()
+        self.computing.clone()
     }
 
     /// Shows the system's file dialog.
@@ -566,7 +567,7 @@ const THUMBNAIL_TRIANGLES: u64 = 400_000;
 
 /// A look on the scene of `own`, before a camera that shows all of it. None if the scene of the
 /// look cannot be measured.
-fn landed(look: &PresetFile, own: &PresetFile, scene: &Scene) -> Option<PresetFile> {
+fn land_look(look: &PresetFile, own: &PresetFile, scene: &Scene) -> Option<PresetFile> {
     let fit = match look.needs_fit() {
         true => look.fit_to(
             own,

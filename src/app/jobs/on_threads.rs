@@ -5,15 +5,13 @@ use std::sync::{
     atomic::{AtomicBool, Ordering},
 };
 
-use eframe::egui;
-
 use super::{
     Done, Jobs, background, caught, caught_future, done,
     finished::{
         take_effect_picture, take_golden, take_link, take_precision, take_thumbnail,
         take_thumbnail_on, take_trade,
     },
-    giving_back, landed, memory, small_picture,
+    giving_back, land_look, memory, small_picture,
 };
 use crate::{
     app::{
@@ -175,7 +173,7 @@ fn thumbnail_on(
     scene: &Scene,
     size: [u32; 2],
 ) -> Option<egui::ColorImage> {
-    let preset = landed(look, own, scene)?.preset;
+    let preset = land_look(look, own, scene)?.preset;
     if preset.ground == own.preset.ground && preset.room == own.preset.room {
         return thumbnail_of(&preset, scene, size);
     }

@@ -122,7 +122,7 @@ fn parameters(session: &Session, effect: &Arc<Effect>) -> Vec<Entry> {
                 Choice::Offer(effect.clone()),
             ),
             (Some(words), None) if field.is_shown(&effect.fields, words) => (
-                written(field, &field.value(words)),
+                value_text(field, &field.value(words)),
                 Choice::Reveal(path.clone()),
             ),
             (Some(words), None) => {
@@ -134,7 +134,7 @@ fn parameters(session: &Session, effect: &Arc<Effect>) -> Vec<Entry> {
                     });
                 let reason = format!("{path} is shown while {condition}");
                 (
-                    format!("{}, hidden", written(field, &field.value(words))),
+                    format!("{}, hidden", value_text(field, &field.value(words))),
                     Choice::Refuse(reason),
                 )
             }
@@ -149,7 +149,7 @@ fn of_setting(session: &Session, setting: &'static Setting) -> Option<Entry> {
     let value = setting.get(session.preset());
     let detail = value
         .as_ref()
-        .map_or_else(String::new, |value| written(setting, value));
+        .map_or_else(String::new, |value| value_text(setting, value));
     let path = setting.path();
     let choice = match value {
         Some(_) if has_row(&path) => Choice::Reveal(path.clone()),
@@ -224,7 +224,7 @@ fn preset(entry: &GalleryEntry) -> Option<Entry> {
 }
 
 /// A value with its unit, short enough for a row.
-fn written(param: &Param, value: &Value) -> String {
+fn value_text(param: &Param, value: &Value) -> String {
     let text = toml_value::write_text(&param.value_type, value);
     let short: String = if text.chars().count() > MAX_VALUE {
         text.chars().take(MAX_VALUE).chain(['…']).collect()

@@ -1,6 +1,6 @@
 //! The menu of anti-aliasing in the top bar.
 
-use eframe::egui::{ComboBox, RichText, Ui};
+use egui::{ComboBox, RichText, Ui};
 
 use crate::{
     accuracy::{AXES, Axis, AxisOption, PinnedOptions, RenderScale},

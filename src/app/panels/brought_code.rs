@@ -1,7 +1,7 @@
 //! The question whether the code of a preset may run: its effects with their sizes, their hooks and
 //! their texts.
 
-use eframe::egui::{self, RichText, Ui};
+use egui::{self, RichText, Ui};
 
 use crate::{app::widgets::theme, preset_file::PresetFile};
 

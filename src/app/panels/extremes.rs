@@ -7,16 +7,17 @@ use std::{
     time::Duration,
 };
 
-use eframe::egui::{self, Color32, RichText, Ui};
+use egui::{self, Color32, RichText, Ui};
 use pollster::FutureExt as _;
 use web_time::Instant;
 
+use crate::app::panels::panel::Panel;
 use crate::{
     app::{
-        jobs::{computing::Computing, memory},
+        jobs::{Computing, memory},
         shell::{command::Commands, log::Level, state::State},
         trade::pace::about,
-        widgets::{panel::Panel, theme},
+        widgets::theme,
     },
     extremes::{Cases, Outcome, Report, names},
     gpu::{Gpu, Renderer, device::AdapterChoice},

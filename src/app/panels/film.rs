@@ -3,8 +3,9 @@
 
 use std::{path::Path, sync::Arc};
 
-use eframe::egui::{self, Button, Key, Label, Ui, vec2};
+use egui::{self, Button, Key, Label, Ui, vec2};
 
+use crate::app::panels::panel::Panel;
 use crate::{
     accuracy::RenderScale,
     app::{
@@ -14,7 +15,7 @@ use crate::{
         shell::{command::Commands, log::Level, state::State},
         widgets::{
             form::{field_ui, form_ui, menu_ui, number_ui, text_ui, words_ui},
-            panel::{Panel, at_right, centered, main_button},
+            panel::{at_right, centered_window, main_button},
             size::size_ui,
             text::cut_middle,
             theme,
@@ -228,7 +229,7 @@ impl FilmPanel {
     }
 
     /// Takes the end of the film of `progress`. Returns what to say about it.
-    pub fn arrived(
+    pub fn take_end(
         &mut self,
         progress: &Arc<Progress>,
         ended: Result<Finished, Failure>,
@@ -340,7 +341,7 @@ impl Panel for FilmPanel {
         let mut is_open = true;
         let area = ui.ctx().content_rect();
         let width = WIDTH.min(area.width() - 4.0 * theme::GAP);
-        centered(ui.ctx(), "Export film", &mut is_open)
+        centered_window(ui.ctx(), "Export film", &mut is_open)
             .default_width(width)
             .show(ui.ctx(), |ui| {
                 ui.set_width(width);

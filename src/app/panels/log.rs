@@ -1,7 +1,8 @@
 //! The log panel, and the toasts over the picture.
 
-use eframe::egui::{self, Rect, RichText, Ui};
+use egui::{self, Rect, RichText, Ui};
 
+use crate::app::panels::panel::Panel;
 use crate::app::{
     shell::{
         command::Commands,
@@ -10,7 +11,7 @@ use crate::app::{
     },
     widgets::{
         icons::{Icon, icon_button},
-        panel::{Panel, at_right},
+        panel::at_right,
         theme,
     },
 };

@@ -12,6 +12,7 @@ pub mod log;
 pub mod naming;
 pub mod new_effect;
 pub mod palette;
+pub mod panel;
 pub mod preset_browser;
 pub mod randomize;
 pub mod review;

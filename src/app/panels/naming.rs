@@ -1,16 +1,13 @@
 //! The dialog that asks for a name: of a preset, of saved values of an effect, or of a bookmark.
 
-use eframe::egui::Ui;
+use egui::Ui;
 
 use super::dialogs::buttons::buttons;
+use crate::app::panels::panel::Panel;
 use crate::app::{
     files::{command::Naming, library},
     shell::{command::Commands, state::State},
-    widgets::{
-        form::name_ui,
-        panel::{Panel, modal},
-        theme,
-    },
+    widgets::{form::name_ui, panel::modal, theme},
 };
 
 const WIDTH: f32 = 400.0;

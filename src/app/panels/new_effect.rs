@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use eframe::egui::Ui;
+use egui::Ui;
 
 use crate::{
     app::{

@@ -1,17 +1,18 @@
 //! The command palette: a search over everything that the window can do, over the picture.
 
-use eframe::egui::{
+use egui::{
     self, Align, Align2, FontId, Key, Modifiers, Rect, RichText, ScrollArea, Sense, TextEdit, Ui,
     pos2, vec2,
 };
 
+use crate::app::panels::panel::Panel;
 use crate::{
     app::{
         editing::session::Session,
         palette::{Choice, Entry, MAX_LISTED, entries, perform, rank},
         shell::{action::Action, command::Commands, state::State},
         widgets::{
-            panel::{Panel, at_right, describe_chosen},
+            panel::{at_right, describe_chosen},
             theme,
         },
     },

@@ -3,8 +3,9 @@
 
 use std::{collections::HashMap, sync::Arc};
 
-use eframe::egui::{self, RichText, Sense, Ui, vec2};
+use egui::{self, RichText, Sense, Ui, vec2};
 
+use crate::app::panels::panel::Panel;
 use crate::{
     app::{
         editing::apply::recall_seed,
@@ -19,7 +20,8 @@ use crate::{
             state::State,
         },
         widgets::{
-            panel::{Panel, describe_chosen, main_button, picture_ui, plate, window},
+            fields::label,
+            panel::{describe_chosen, main_button, picture_ui, plate, window},
             theme,
         },
     },
@@ -54,7 +56,7 @@ impl RandomizePanel {
     }
 
     /// Takes the picture of a seed.
-    pub fn arrived(&mut self, ctx: &egui::Context, seed: u32, picture: CellResult) {
+    pub fn take_picture(&mut self, ctx: &egui::Context, seed: u32, picture: CellResult) {
         if self.drawing == Some(seed) {
             self.drawing = None;
         }
@@ -221,7 +223,7 @@ fn locks_ui(ui: &mut Ui, state: &State, commands: &Commands, enabled: &EnabledEf
                 .get(&effect.name, &field.name)
                 .is_some();
             let mut varies = !seeds.is_locked(effect, field) && !is_animated;
-            let name = RichText::new(field.name.replace('_', " ")).size(12.0);
+            let name = RichText::new(label(&field.name, &field.unit)).size(12.0);
             let response = ui.add_enabled(!is_animated, egui::Checkbox::new(&mut varies, name));
             let response = response
                 .on_hover_text(&field.doc)

@@ -3,9 +3,10 @@
 
 use std::sync::Arc;
 
-use eframe::egui::{self, Color32, Pos2, Rect, RichText, Sense, Ui, pos2, vec2};
+use egui::{self, Color32, Pos2, Rect, RichText, Sense, Ui, pos2, vec2};
 
 use super::viewport::compare_ui::divider_ui;
+use crate::app::panels::panel::{Panel, performs};
 use crate::{
     app::{
         picture::apply::begin_review,
@@ -13,7 +14,7 @@ use crate::{
         shell::{action::Action, command::Commands, state::State},
         widgets::{
             form::modes_ui,
-            panel::{Panel, describe, main_button, performs, window},
+            panel::{describe, main_button, window},
             theme,
         },
     },

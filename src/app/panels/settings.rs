@@ -1,8 +1,9 @@
 //! The settings window: theme, size of texts and controls, and the cheat sheet: every action with
 //! its keys, which can be changed, and its present value.
 
-use eframe::egui::{self, Button, Event, Key, Label, RichText, Ui, vec2};
+use egui::{self, Button, Event, Key, Label, RichText, Ui, vec2};
 
+use crate::app::panels::panel::{Panel, performs};
 use crate::app::{
     settings::{
         SCALES,
@@ -17,7 +18,7 @@ use crate::app::{
     widgets::{
         form::{field_ui, form_ui, is_entered, search_ui, words_ui},
         icons::{Icon, icon_button},
-        panel::{Panel, at_right, centered, performs},
+        panel::{at_right, centered_window},
         theme::{self, ThemeChoice},
     },
 };
@@ -96,7 +97,9 @@ impl SettingsWindow {
         let search = self.search.to_lowercase();
         let is_found =
             |label: &str, how: &str| format!("{label} {how}").to_lowercase().contains(&search);
-        let rows = egui::ScrollArea::vertical().max_height(height);
+        let rows = egui::ScrollArea::vertical()
+            .max_height(height)
+            .min_scrolled_height(height);
         rows.auto_shrink([false, false]).show(ui, |ui| {
             let mut count = 0;
             for (action, label, _) in actions() {
@@ -144,7 +147,7 @@ impl SettingsWindow {
             (false, keys) => (keys, theme::text_strong()),
         };
         let button = Button::new(RichText::new(text).monospace().color(color))
-            .min_size(vec2(140.0, theme::ROW - 2.0))
+            .min_size(vec2(170.0, theme::ROW - 2.0))
             .selected(is_waiting);
         let button = ui
             .add(button)
@@ -179,7 +182,7 @@ impl Panel for SettingsWindow {
         self.take_key(ui, commands);
         let area = ui.ctx().content_rect();
         let mut is_open = true;
-        centered(ui.ctx(), "Settings", &mut is_open).show(ui.ctx(), |ui| {
+        centered_window(ui.ctx(), "Settings", &mut is_open).show(ui.ctx(), |ui| {
             ui.set_width(560.0f32.min(area.width() - 48.0));
             form_ui(ui, "settings", |ui| {
                 field_ui(ui, "Theme", "", |ui| {
@@ -218,7 +221,7 @@ fn scale_ui(ui: &mut Ui, scale: f32, commands: &Commands) {
     for (text, action, is_enabled) in [
         ("\u{2212}", Action::ScaleDown, scale > SCALES[0]),
         ("+", Action::ScaleUp, scale < SCALES[1]),
-        ("100 %", Action::ScaleReset, true),
+        ("Reset", Action::ScaleReset, scale != 1.0),
     ] {
         if action == Action::ScaleUp {
             let percent = Label::new(format!("{:.0} %", scale * 100.0));

@@ -6,8 +6,9 @@ use std::sync::{
     atomic::{AtomicBool, Ordering},
 };
 
-use eframe::egui::{self, RichText, Sense, Ui, vec2};
+use egui::{self, RichText, Sense, Ui, vec2};
 
+use crate::app::panels::panel::Panel;
 use crate::{
     app::{
         editing::apply::set_values,
@@ -17,8 +18,8 @@ use crate::{
         },
         shell::{command::Commands, state::State},
         widgets::{
-            form::{menu_ui, number_ui},
-            panel::{Panel, describe, main_button, picture_ui, window},
+            form::{field_ui, form_ui, menu_ui, number_ui},
+            panel::{describe, main_button, picture_ui, window},
             theme,
         },
     },
@@ -157,7 +158,7 @@ impl SweepPanel {
     }
 
     /// Takes a picture.
-    pub fn arrived(
+    pub fn take_picture(
         &mut self,
         ctx: &egui::Context,
         (number, index): (u64, usize),
@@ -268,9 +269,11 @@ impl SweepPanel {
             ));
             return;
         }
-        for (index, varied) in self.varied.iter_mut().enumerate() {
-            ui.horizontal(|ui| varied_ui(ui, index, varied, &known));
-        }
+        form_ui(ui, "varied", |ui| {
+            for (name, varied) in VARIED.into_iter().zip(&mut self.varied) {
+                field_ui(ui, name, "", |ui| varied_ui(ui, name, varied, &known));
+            }
+        });
         ui.horizontal(|ui| {
             let requested = state.picture.screen.requested();
             let button = main_button("Draw the sheet");
@@ -299,20 +302,16 @@ impl SweepPanel {
     }
 }
 
+/// Where the first and the second parameter change.
+const VARIED: [&str; 2] = ["along the rows", "from row to row"];
+
 /// The choice of a parameter, with its ends and the number of steps.
-fn varied_ui(
-    ui: &mut Ui,
-    index: usize,
-    varied: &mut Option<Varied>,
-    known: &[(String, Arc<Field>)],
-) {
-    let name = ["along the rows", "from row to row"][index];
-    ui.add_sized([96.0, theme::ROW], egui::Label::new(theme::weak(name)));
+fn varied_ui(ui: &mut Ui, name: &str, varied: &mut Option<Varied>, known: &[(String, Arc<Field>)]) {
     let now = varied
         .as_ref()
         .map_or("none", |varied| &varied.path)
         .to_owned();
-    let none = (index > 0).then(|| (String::new(), "none".to_owned(), ""));
+    let none = (name != VARIED[0]).then(|| (String::new(), "none".to_owned(), ""));
     let paths = known
         .iter()
         .map(|(path, _)| (path.clone(), path.clone(), ""));

@@ -1,11 +1,12 @@
 //! The timing panel: the newest frames as a plot, and the median and spread of the frame and of its
 //! passes.
 
-use eframe::egui::{self, Color32, RichText, Ui, vec2};
+use egui::{self, Color32, RichText, Ui, vec2};
 use egui_plot::{Bar, BarChart, HLine, LineStyle};
 
 use super::trade::plot::still_plot;
 
+use crate::app::panels::panel::Panel;
 use crate::{
     app::{
         picture::{
@@ -15,7 +16,7 @@ use crate::{
         shell::{action::Action, command::Commands, state::State, ui_frames::UiFrames},
         widgets::{
             icons::{Icon, icon_button, swatch},
-            panel::{Panel, at_right},
+            panel::at_right,
             text::short,
             theme,
         },
@@ -24,7 +25,7 @@ use crate::{
 };
 
 /// Width of the table, points.
-const TABLE_WIDTH: f32 = 372.0;
+const TABLE_WIDTH: f32 = 430.0;
 
 /// The plot reaches this much above the slowest frame that compiled nothing.
 const HEADROOM: f64 = 1.15;

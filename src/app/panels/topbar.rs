@@ -2,9 +2,10 @@
 
 use std::path::Path;
 
-use eframe::egui::{self, Align, Layout, RichText, Sense, Ui, vec2};
+use egui::{self, Align, Layout, RichText, Sense, Ui, vec2};
 
 use super::anti_aliasing::anti_aliasing_ui;
+use crate::app::panels::panel::Panel;
 use crate::app::{
     picture::{
         measured::{error_line, time_line},
@@ -16,7 +17,7 @@ use crate::app::{
         fields::dot,
         form::words_ui,
         icons::{Icon, icon_button},
-        panel::{Panel, at_right, entry},
+        panel::{at_right, entry},
         theme::{self, ThemeChoice},
     },
 };

@@ -3,8 +3,6 @@
 //! egui can show a texture too, but on a software adapter its general shader takes longer than the
 //! whole rasterizer.
 
-use eframe::{egui, egui_wgpu, wgpu};
-
 const SHADER: &str = "
 struct Corner { @builtin(position) position: vec4f, @location(0) uv: vec2f }
 

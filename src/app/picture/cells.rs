@@ -6,7 +6,7 @@ use std::sync::{
     atomic::{AtomicBool, Ordering},
 };
 
-use eframe::egui::ColorImage;
+use egui::ColorImage;
 
 use super::screen::Inputs;
 use crate::gpu::{Gpu, Renderer};

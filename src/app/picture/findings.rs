@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::overlay::Overlay;
 use crate::{
-    app::widgets::text::grouped,
+    app::widgets::text::group_digits,
     effect_files::Crossing,
     frame::{Geometry, NO_TRIANGLE},
     gpu::Capture,
@@ -167,7 +167,7 @@ impl Findings {
             if triangle_id == NO_TRIANGLE {
                 "empty".into()
             } else {
-                format!("triangle {}", grouped(triangle_id.into()))
+                format!("triangle {}", group_digits(triangle_id.into()))
             }
         };
         let reference = self

@@ -102,7 +102,7 @@ mod native {
         if !golden.is_file() {
             return None;
         }
-        let outcome = compared(preset_file, &golden).unwrap_or_else(Outcome::Failed);
+        let outcome = compare_golden(preset_file, &golden).unwrap_or_else(Outcome::Failed);
         Some(GoldenCheck {
             file: FileId::of(preset_file),
             golden,
@@ -110,7 +110,7 @@ mod native {
         })
     }
 
-    fn compared(preset_file: &PresetFile, golden: &Path) -> Result<Outcome, String> {
+    fn compare_golden(preset_file: &PresetFile, golden: &Path) -> Result<Outcome, String> {
         let (expected, size) =
             preset_file::png_pixels(golden).map_err(|error| error.to_string())?;
         let preset = &preset_file.preset;

@@ -1,7 +1,7 @@
 //! Time and error of a picture in words and colors, as the top bar, the comparison and the
 //! inspector show them.
 
-use eframe::egui::Color32;
+use egui::Color32;
 
 use super::{
     findings::Findings,
@@ -9,7 +9,7 @@ use super::{
     timings::{Cost, Summary},
     verification::Verdict,
 };
-use crate::app::widgets::{text::grouped, theme};
+use crate::app::widgets::{text::group_digits, theme};
 
 /// What the two counts of wrong pixels mean, wherever they stand.
 pub const WRONG_HINT: &str = "Snapped: pixels that show another triangle than the oracle draws from the same snapped corners, so a fault of the \
@@ -90,16 +90,16 @@ pub fn error_text(findings: &Findings) -> String {
     let wrong = match report.wrong_triangles {
         0 => "no wrong pixel".to_owned(),
         1 => "1 wrong pixel".to_owned(),
-        count => format!("{} wrong pixels", grouped(count)),
+        count => format!("{} wrong pixels", group_digits(count)),
     };
     let rounded = match findings.wrong_against_true() {
         None | Some(0) => String::new(),
         Some(1) => ", 1 differs by rounding".to_owned(),
-        Some(count) => format!(", {} differ by rounding", grouped(count)),
+        Some(count) => format!(", {} differ by rounding", group_digits(count)),
     };
     let race = match report.race_pixels {
         0 => String::new(),
-        count => format!(", {} lost to the race", grouped(count)),
+        count => format!(", {} lost to the race", group_digits(count)),
     };
     // A last bit is no difference that a person could see.
     let color = match report.max_color_delta {
@@ -112,7 +112,7 @@ pub fn error_text(findings: &Findings) -> String {
 fn details(findings: &Findings) -> String {
     let report = &findings.accuracy;
     let against_true = match findings.wrong_against_true() {
-        Some(count) => format!("{} against the true positions", grouped(count)),
+        Some(count) => format!("{} against the true positions", group_digits(count)),
         None => {
             "not compared with the true positions, because its effects are not reproducible".into()
         }
@@ -120,8 +120,8 @@ fn details(findings: &Findings) -> String {
     format!(
         "{} pixels compared with the oracle: {} wrong against the snapped corners, {against_true}; {} explained by a vertex one snap unit \
          away, {} depth ties, {} holes, {} drawn twice; color max Δ {} and RMS {:.3} of 255.\n\n{WRONG_HINT}",
-        grouped(report.pixels),
-        grouped(report.wrong_triangles),
+        group_digits(report.pixels),
+        group_digits(report.wrong_triangles),
         report.explained_by_snap,
         report.depth_band_pixels,
         report.holes,

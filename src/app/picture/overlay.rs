@@ -1,7 +1,7 @@
 //! Overlays: images of where the picture is wrong and what it is made of, any of which can lie over
 //! it.
 
-use eframe::egui::Color32;
+use egui::Color32;
 
 use crate::measure::error_map::PixelError;
 

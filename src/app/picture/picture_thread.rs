@@ -21,7 +21,6 @@ use std::{
     time::Duration,
 };
 
-use eframe::{egui, wgpu};
 use web_time::Instant;
 
 use super::{

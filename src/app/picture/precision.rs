@@ -94,7 +94,7 @@ impl PrecisionState {
     }
 
     /// A measurement has ended; none if it was cancelled. Returns an error that is to be logged.
-    pub fn arrived(
+    pub fn take_errors(
         &mut self,
         of: Inputs,
         measured: Result<Option<Box<Measured>>, String>,

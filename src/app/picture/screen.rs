@@ -4,7 +4,6 @@
 
 use std::{sync::Arc, thread::JoinHandle};
 
-use eframe::{egui, egui_wgpu, wgpu};
 use web_time::Instant;
 
 pub use super::inputs::Inputs;

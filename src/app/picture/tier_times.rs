@@ -4,8 +4,6 @@
 
 use std::sync::Arc;
 
-use eframe::egui;
-
 use super::{
     picture_thread::wait_for_frame,
     precision::REST_S,
@@ -270,7 +268,7 @@ pub fn follow(ctx: &egui::Context, state: &mut State, is_busy: bool) {
 
 /// Takes in what a measurement has found; it counts if the picture is still the same and nothing
 /// else ran.
-pub fn arrived(
+pub fn take_times(
     state: &mut State,
     Timed {
         picture,

@@ -330,7 +330,7 @@ fn lock(folder: &Path, remarks: &mut Vec<String>) -> Option<Lock> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::preset_file::{self, PresetFile};
+    use crate::preset_file;
 
     fn session_of(id: &str) -> Session {
         Session::new(preset_file::open(id, &Folders::default()).expect("a built-in preset"))
@@ -428,40 +428,5 @@ mod tests {
             panic!("no session")
         };
         assert_eq!(restored.preset_file.id, "facet-sweep");
-    }
-
-    #[test]
-    fn broken_settings_are_one_line_and_put_aside() {
-        let folder = tempfile::tempdir().expect("a temporary folder");
-        std::fs::write(folder.path().join(SETTINGS), "theme = = 1").expect("a file");
-        let (_, settings, remarks) = keeper(folder.path());
-        assert_eq!(
-            (settings, remarks.len()),
-            (Settings::default(), 1),
-            "{remarks:?}"
-        );
-        assert_eq!(
-            std::fs::read_to_string(folder.path().join("settings.toml.broken"))
-                .expect("it is kept"),
-            "theme = = 1"
-        );
-    }
-
-    #[test]
-    fn without_a_folder_nothing_is_kept() {
-        let (mut keeper, mut settings, remarks) = Keeper::new(None);
-        assert_eq!(remarks, [""; 0]);
-        settings.scale = 2.0;
-        let session = Session::new(PresetFile::new("x", Preset::default()));
-        keeper.begin_session();
-        assert_eq!(
-            keeper.follow(&settings, without_review(&session), 5.0),
-            (None, None)
-        );
-        keeper.close(&settings, without_review(&session), true);
-        assert!(matches!(
-            keeper.previous_session(&Folders::default()),
-            PreviousSession::None
-        ));
     }
 }

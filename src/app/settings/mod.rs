@@ -8,7 +8,6 @@ pub mod keymap;
 pub mod last_session;
 pub mod recents;
 
-use eframe::egui;
 use serde::{Deserialize, Deserializer, Serialize};
 
 use self::{browsing::Browsing, film::FilmSettings, keymap::Keymap, recents::Recents};
@@ -238,7 +237,7 @@ fn panel_width<'de, D: Deserializer<'de>>(from: D) -> Result<Option<f32>, D::Err
 
 #[cfg(test)]
 mod tests {
-    use eframe::egui::{Key, Modifiers};
+    use egui::{Key, Modifiers};
 
     use super::{
         browsing::{Layout, Sort, Tab},

@@ -2,7 +2,7 @@
 
 use std::cell::RefCell;
 
-use eframe::egui::{Key, KeyboardShortcut, Modifiers, ViewportCommand};
+use egui::{Key, KeyboardShortcut, Modifiers, ViewportCommand};
 
 use super::apply::{
     ask_new_effect, copy_link, copy_preset, export_all, toggle_film, toggle_palette, toggle_panels,

@@ -3,7 +3,6 @@
 use std::sync::Arc;
 
 use anyhow::Context as _;
-use eframe::{egui_wgpu, wgpu};
 use pollster::FutureExt as _;
 
 use crate::gpu::{

@@ -2,7 +2,7 @@
 
 use std::{collections::VecDeque, fs::File, io::Write as _, sync::Arc};
 
-use eframe::egui::Color32;
+use egui::Color32;
 
 use crate::app::widgets::{text::first_line, theme};
 

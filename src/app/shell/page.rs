@@ -7,7 +7,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use eframe::{egui, egui_wgpu, web_sys::HtmlCanvasElement};
+use eframe::web_sys::HtmlCanvasElement;
 use js_sys::{Array, Function, Promise, Reflect, Uint8Array};
 use wasm_bindgen::{JsCast as _, JsValue, prelude::Closure};
 use wasm_bindgen_futures::JsFuture;

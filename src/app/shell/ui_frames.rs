@@ -3,7 +3,7 @@
 
 use std::{collections::VecDeque, time::Duration};
 
-use eframe::egui::{self, Plugin, RawInput, ViewportId};
+use egui::{self, Plugin, RawInput, ViewportId};
 use web_time::Instant;
 
 /// Frames that are remembered.

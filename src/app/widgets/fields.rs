@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use eframe::egui::{
+use egui::{
     self, Align, Color32, Rect, Response, Sense, Slider, SliderClamping, Ui, UiBuilder, pos2, vec2,
 };
 
@@ -136,7 +136,8 @@ impl Row {
 
 /// The name without its unit, as the unit is shown after the number: `radius_m` in meters is
 /// `radius`.
-fn label(name: &str, unit: &str) -> String {
+/// The name of a parameter in words, without the unit, which its value has.
+pub fn label(name: &str, unit: &str) -> String {
     let stem = [
         ("m", "_m"),
         ("°", "_deg"),
@@ -279,13 +280,13 @@ fn label_ui(ui: &mut Ui, row: &Row, value: &Value, rect: Rect) -> Option<RowComm
             "{}   {}{}",
             row.path,
             row.param.allowed(),
-            spaced(&row.param.unit)
+            spaced_unit(&row.param.unit)
         )));
     });
     command
 }
 
-fn spaced(unit: &str) -> String {
+fn spaced_unit(unit: &str) -> String {
     match unit {
         "" => String::new(),
         unit => format!(" {unit}"),
@@ -394,7 +395,7 @@ fn number_ui(ui: &mut Ui, commands: &Commands, row: &Row, value: f64) -> Shown {
         Some(_) => NUMBER_WIDTH,
         None => ui.available_width().min(120.0),
     };
-    let unit = spaced(&row.param.unit);
+    let unit = spaced_unit(&row.param.unit);
     let speed = if whole { speed.max(0.05) } else { speed };
     let field = NumberField {
         range: [low, high],
@@ -426,7 +427,7 @@ fn say(commands: &Commands, row: &Row, said: Option<String>) {
             "{} takes {}{}: {said}.",
             row.path,
             row.param.allowed(),
-            spaced(&row.param.unit)
+            spaced_unit(&row.param.unit)
         );
         commands.notify(Level::Warning, text);
     }

@@ -3,9 +3,7 @@
 
 use std::ops::RangeInclusive;
 
-use eframe::egui::{
-    self, Button, ComboBox, DragValue, Grid, Response, TextEdit, Ui, emath::Numeric,
-};
+use egui::{self, Button, ComboBox, DragValue, Grid, Response, TextEdit, Ui, emath::Numeric};
 
 use super::{
     icons::{Icon, icon_button},

@@ -1,6 +1,6 @@
 //! The icons of the lab, drawn with lines, so that they look the same with every font.
 
-use eframe::egui::{self, Color32, Pos2, Rect, Response, Role, Sense, Shape, Stroke, Ui, vec2};
+use egui::{self, Color32, Pos2, Rect, Response, Role, Sense, Shape, Stroke, Ui, vec2};
 
 use super::{panel::describe_chosen, theme};
 use crate::app::editing::key_id::Keying;

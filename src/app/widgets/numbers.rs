@@ -3,7 +3,7 @@
 
 use std::cell::RefCell;
 
-use eframe::egui::{self, DragValue, Response, Ui};
+use egui::{self, DragValue, Response, Ui};
 
 use super::theme;
 
@@ -40,7 +40,7 @@ impl NumberField<'_> {
                 if now == before {
                     number.unwrap_or(&shown).to_owned()
                 } else {
-                    rounded(now, self.decimals)
+                    rounded_text(now, self.decimals)
                 }
             })
             .custom_parser(|text| {
@@ -48,7 +48,7 @@ impl NumberField<'_> {
                 if text == number.unwrap_or(&shown) {
                     return Some(before); // What is shown may be rounded; to leave it alone changes nothing.
                 }
-                let parsed = parsed(text, self.unit);
+                let parsed = parse_number(text, self.unit);
                 *typed.borrow_mut() = Some((text.to_owned(), parsed));
                 parsed
             });
@@ -68,9 +68,9 @@ impl NumberField<'_> {
         match parsed {
             None => Some(format!(
                 "{text:?} is no number, so it stays {}",
-                fixed(before, 6)
+                fixed_text(before, 6)
             )),
-            Some(number) if number != now => Some(format!("{text} became {}", fixed(now, 6))),
+            Some(number) if number != now => Some(format!("{text} became {}", fixed_text(now, 6))),
             Some(_) => None,
         }
     }
@@ -92,14 +92,14 @@ impl NumberField<'_> {
         let fits = |text: &String| text.chars().count() <= max_chars;
         let with_unit = (0..=decimals)
             .rev()
-            .map(|decimals| format!("{}{}", rounded(number, decimals), self.unit))
+            .map(|decimals| format!("{}{}", rounded_text(number, decimals), self.unit))
             .find(fits);
         // A small number must not become 0.
         let is_true =
             |text: &String| number == 0.0 || text.contains(|c: char| ('1'..='9').contains(&c));
         // Rather no unit than 1 per m for 0.7.
         let is_near = |text: &String| {
-            parsed(text, self.unit)
+            parse_number(text, self.unit)
                 .is_some_and(|shown| (shown - number).abs() <= 0.02 * number.abs())
         };
         if let Some(text) = with_unit.filter(is_true).filter(is_near) {
@@ -107,7 +107,7 @@ impl NumberField<'_> {
         }
         let without = (0..=decimals)
             .rev()
-            .map(|decimals| rounded(number, decimals))
+            .map(|decimals| rounded_text(number, decimals))
             .find(fits)
             .filter(is_true);
         let power = || {
@@ -123,7 +123,7 @@ impl NumberField<'_> {
 }
 
 /// `0.500`: so many decimals, so that the digits stand still while the number changes.
-fn rounded(number: f64, decimals: usize) -> String {
+fn rounded_text(number: f64, decimals: usize) -> String {
     let text = format!("{number:.decimals$}");
     match text.strip_prefix('-') {
         Some(zero) if zero.chars().all(|c| matches!(c, '0' | '.')) => zero.to_owned(),
@@ -132,8 +132,8 @@ fn rounded(number: f64, decimals: usize) -> String {
 }
 
 /// `0.5`: at most so many decimals, no zeros at the end.
-fn fixed(number: f64, decimals: usize) -> String {
-    let text = rounded(number, decimals);
+fn fixed_text(number: f64, decimals: usize) -> String {
+    let text = rounded_text(number, decimals);
     if text.contains('.') {
         text.trim_end_matches('0').trim_end_matches('.').to_owned()
     } else {
@@ -142,7 +142,7 @@ fn fixed(number: f64, decimals: usize) -> String {
 }
 
 /// The number that was typed, perhaps with its unit.
-fn parsed(text: &str, unit: &str) -> Option<f64> {
+fn parse_number(text: &str, unit: &str) -> Option<f64> {
     let text = text
         .trim()
         .strip_suffix(unit.trim())
@@ -212,11 +212,11 @@ mod tests {
     fn numbers_are_read_with_units_commas_and_typographic_minus() {
         assert_eq!(
             ["12", " -1.5 ", "12 °/s", "\u{2212}3", "1 000", "0,5", "1e3"]
-                .map(|text| parsed(text, " °/s").unwrap_or(f64::NAN)),
+                .map(|text| parse_number(text, " °/s").unwrap_or(f64::NAN)),
             [12.0, -1.5, 12.0, -3.0, 1000.0, 0.5, 1000.0]
         );
         assert_eq!(
-            ["", "abc", "inf", "NaN", "1 m"].map(|text| parsed(text, " °/s")),
+            ["", "abc", "inf", "NaN", "1 m"].map(|text| parse_number(text, " °/s")),
             [None; 5]
         );
     }

@@ -1,18 +1,11 @@
-//! What every panel has in common.
+//! How every panel places and describes what it shows.
 
-use eframe::egui::{
+use egui::{
     Align, Align2, Button, Context, FontId, Image, Layout, Modal, Painter, Pos2, Rect, Response,
     Role, TextureHandle, Ui, WidgetInfo, Window, vec2,
 };
 
 use super::theme;
-use crate::app::shell::{action::Action, command::Commands, state::State};
-
-/// A part of the window. It owns what only it needs, reads the state, and sends commands for
-/// everything else.
-pub trait Panel {
-    fn ui(&mut self, ui: &mut Ui, state: &State, commands: &Commands);
-}
 
 /// Contents at the right end, from right to left.
 pub fn at_right<R>(ui: &mut Ui, contents: impl FnOnce(&mut Ui) -> R) -> R {
@@ -39,7 +32,7 @@ pub fn window<'a>(title: &'a str, is_open: &'a mut bool) -> Window<'a> {
 }
 
 /// The same in the middle of all.
-pub fn centered<'a>(ctx: &Context, title: &'a str, is_open: &'a mut bool) -> Window<'a> {
+pub fn centered_window<'a>(ctx: &Context, title: &'a str, is_open: &'a mut bool) -> Window<'a> {
     window(title, is_open)
         .pivot(Align2::CENTER_CENTER)
         .default_pos(ctx.content_rect().center())
@@ -47,8 +40,8 @@ pub fn centered<'a>(ctx: &Context, title: &'a str, is_open: &'a mut bool) -> Win
 
 /// A dialog that takes all keys.
 pub fn modal(ctx: &Context, id: &str, margin: f32) -> Modal {
-    let frame = eframe::egui::Frame::window(&ctx.global_style()).inner_margin(margin);
-    Modal::new(eframe::egui::Id::unique(id)).frame(frame)
+    let frame = egui::Frame::window(&ctx.global_style()).inner_margin(margin);
+    Modal::new(egui::Id::unique(id)).frame(frame)
 }
 
 /// The button of what a window is there for.
@@ -59,13 +52,6 @@ pub fn main_button(text: &str) -> Button<'_> {
 /// An entry of a menu that is so wide.
 pub fn entry(text: &str, width: f32) -> Button<'_> {
     Button::new(text).min_size(vec2(width, theme::ROW))
-}
-
-/// Performs `action` when `button` is clicked, which says so on hover.
-pub fn performs(button: Response, commands: &Commands, action: Action) {
-    if button.on_hover_text(action.hint()).clicked() {
-        commands.perform(action);
-    }
 }
 
 /// Tells assistive technology what was painted by hand.

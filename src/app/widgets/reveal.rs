@@ -1,7 +1,7 @@
 //! Showing a row of the inspector that the user has asked for by its path: folders open, the panel
 //! scrolls there, and the control of the row has the focus.
 
-use eframe::egui::{self, Align, Rect, Response, Ui};
+use egui::{self, Align, Rect, Response, Ui};
 
 use super::theme;
 
@@ -23,7 +23,7 @@ fn id() -> egui::Id {
     egui::Id::unique("revealed row")
 }
 
-fn revealed(ctx: &egui::Context) -> Option<Revealed> {
+fn revealed_row(ctx: &egui::Context) -> Option<Revealed> {
     let revealed: Revealed = ctx.data(|data| data.get_temp(id()))?;
     let now_s = ctx.input(|i| i.time);
     (now_s - revealed.since_s <= MARK_S).then_some(revealed)
@@ -52,13 +52,13 @@ pub fn is_within(ctx: &egui::Context, prefix: &str) -> bool {
         path.strip_prefix(prefix)
             .is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
     };
-    revealed(ctx).is_some_and(|revealed| is_of(&revealed.path))
+    revealed_row(ctx).is_some_and(|revealed| is_of(&revealed.path))
 }
 
 /// Marks the row of `path` and scrolls to it, if this row is to be shown.
 pub fn row(ui: &Ui, path: &str, rect: Rect) {
     let ctx = ui.ctx();
-    let Some(shown) = revealed(ctx).filter(|revealed| revealed.path == path) else {
+    let Some(shown) = revealed_row(ctx).filter(|revealed| revealed.path == path) else {
         return;
     };
     let passed_s = ctx.input(|i| i.time) - shown.since_s;
@@ -82,7 +82,7 @@ pub fn row(ui: &Ui, path: &str, rect: Rect) {
 /// Gives `control` the focus, once, if it belongs to the row that is to be shown.
 pub fn focus(path: &str, control: &Response) {
     let Some(mut shown) =
-        revealed(&control.ctx).filter(|revealed| revealed.path == path && !revealed.is_focused)
+        revealed_row(&control.ctx).filter(|revealed| revealed.path == path && !revealed.is_focused)
     else {
         return;
     };

@@ -1,6 +1,6 @@
 //! The size of a picture: width and height as numbers, or one of the sizes that have a name.
 
-use eframe::egui::Ui;
+use egui::Ui;
 
 use super::form::{menu_ui, number_ui};
 use crate::preset::NAMED_SIZES;

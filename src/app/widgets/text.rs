@@ -1,6 +1,6 @@
 //! Numbers as people read them.
 
-pub use crate::params::grouped;
+pub use crate::params::group_digits;
 
 /// `1.5 MiB`.
 pub fn bytes(bytes: u64) -> String {
@@ -53,7 +53,7 @@ mod tests {
     #[test]
     fn digits_are_grouped_by_three() {
         assert_eq!(
-            [grouped(7), grouped(1000), grouped(1_234_567)],
+            [group_digits(7), group_digits(1000), group_digits(1_234_567)],
             ["7", "1,000", "1,234,567"]
         );
     }

@@ -3,7 +3,7 @@
 
 use std::cell::Cell;
 
-use eframe::egui::{
+use egui::{
     self, Color32, CornerRadius, FontFamily, FontId, Margin, RichText, Stroke, TextStyle, vec2,
 };
 

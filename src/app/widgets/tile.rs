@@ -1,6 +1,6 @@
 //! Tiles: what a browser lists, side by side with their pictures, names and stars.
 
-use eframe::egui::{
+use egui::{
     self, Align2, FontId, Rect, Response, Role, Sense, Ui, Vec2, pos2, text::LayoutJob, vec2,
 };
 

@@ -7,12 +7,13 @@ use std::{
     time::Duration,
 };
 
-use eframe::egui::{self, Ui, ViewportCommand};
+use egui::{self, Ui, ViewportCommand};
 
 use super::{
     escape::escape, fold::Fold, input, loss::LossFlag, pointer_frames::PointerFrames,
     typing::HeldTyping,
 };
+use crate::app::panels::panel::Panel;
 use crate::{
     app::{
         editing::{history::History, trust::Trust},
@@ -28,11 +29,11 @@ use crate::{
             watch::Watcher,
         },
         jobs::Jobs,
-        panels::{Panels, log::toasts_ui},
+        panels::{Panels, dialogs::Dialogs, log::toasts_ui},
         picture::{
             apply::verify_shown, precision::REST_S, screen::Screen, state::PictureState, tier_times,
         },
-        settings::{keeper::Keeper, recents::Recents},
+        settings::{OpenPanels, keeper::Keeper, last_session::Restored, recents::Recents},
         shell::{
             command::Commands,
             device::{self, Devices},
@@ -40,7 +41,7 @@ use crate::{
             state::{Clipboard, Closing, State},
             ui_frames::UiFrames,
         },
-        widgets::{panel::Panel, theme},
+        widgets::theme,
     },
     gpu::device::AdapterChoice,
     host,
@@ -75,6 +76,20 @@ const LEAST_CODE: f32 = 260.0;
 const LEAST_PICTURE: f32 = 200.0;
 /// Least width of the picture for which the presets stay beside the text, points.
 const PICTURE_BESIDE_PRESETS: f32 = 400.0;
+
+/// Asks about what a start must not do by itself.
+fn ask_about(asks: Option<PresetFile>, crashed: Option<Box<Restored>>, dialogs: &mut Dialogs) {
+    if let Some(asks) = asks {
+        let said = format!("Opened {}", asks.title());
+        match asks.outside_model {
+            Some(_) => dialogs.ask_outside(asks.into(), Manner::WithScene, said),
+            None => dialogs.ask_code(asks.into(), CodeUse::Open(Manner::WithScene, said)),
+        }
+    }
+    if let Some(crashed) = crashed {
+        dialogs.ask_restore(crashed);
+    }
+}
 
 /// The whole window.
 pub struct App {
@@ -133,20 +148,7 @@ impl App {
             (&keeper, &trust),
             &mut log,
         );
-        if let Some(asks) = start.asks {
-            let said = format!("Opened {}", asks.title());
-            match asks.outside_model {
-                Some(_) => panels
-                    .dialogs
-                    .ask_outside(asks.into(), Manner::WithScene, said),
-                None => panels
-                    .dialogs
-                    .ask_code(asks.into(), CodeUse::Open(Manner::WithScene, said)),
-            }
-        }
-        if let Some(crashed) = start.crashed {
-            panels.dialogs.ask_restore(crashed);
-        }
+        ask_about(start.asks, start.crashed, &mut panels.dialogs);
         let mut session = start.session;
         // The start preset plays, unless on a software adapter, which draws moving pictures at half
         // their size: there its own moment stands whole. A preset that the user named does not play.
@@ -384,6 +386,29 @@ impl App {
         jobs.measure_precision(requested, cancelled);
     }
 
+    /// A panel over the timeline, of this name, usual height and least height.
+    fn bottom_panel(
+        &mut self,
+        ui: &mut Ui,
+        (name, [height, least]): (&'static str, [f32; 2]),
+        is_open: fn(&mut OpenPanels) -> &mut bool,
+        panel: fn(&mut Panels) -> &mut dyn Panel,
+    ) {
+        let frame = egui::Panel::bottom(name)
+            .frame(theme::panel_frame())
+            .resizable(true)
+            .drag_to_open(name == "log")
+            .default_size(height)
+            .min_size(least);
+        let was_open = *is_open(&mut self.state.open);
+        let mut stays_open = was_open;
+        frame.show_collapsible(ui, &mut stays_open, |ui| self.panel_ui(ui, panel));
+        // A button of the panel may have closed it.
+        if stays_open != was_open {
+            *is_open(&mut self.state.open) = stays_open;
+        }
+    }
+
     fn panels_ui(&mut self, ui: &mut Ui) {
         egui::Panel::top("top")
             .frame(theme::bar_frame())
@@ -400,37 +425,24 @@ impl App {
             self.panel_ui(ui, |panels| &mut panels.timeline)
         });
         self.state.open.timeline = is_open;
-        let trade = egui::Panel::bottom("trade")
-            .frame(theme::panel_frame())
-            .resizable(true)
-            .default_size(304.0)
-            .min_size(190.0);
-        let mut is_open = self.state.open.trade;
-        trade.show_collapsible(ui, &mut is_open, |ui| {
-            self.panel_ui(ui, |panels| &mut panels.trade)
-        });
-        // This panel and the next have a button that closes them, too.
-        self.state.open.trade &= is_open;
-        let timing = egui::Panel::bottom("timing")
-            .frame(theme::panel_frame())
-            .resizable(true)
-            .default_size(230.0)
-            .min_size(150.0);
-        let mut is_open = self.state.open.timing;
-        timing.show_collapsible(ui, &mut is_open, |ui| {
-            self.panel_ui(ui, |panels| &mut panels.timing)
-        });
-        self.state.open.timing &= is_open;
-        let log = egui::Panel::bottom("log")
-            .frame(theme::panel_frame())
-            .resizable(true)
-            .default_size(150.0)
-            .min_size(72.0);
-        let mut is_open = self.state.open.log;
-        log.show_collapsible(ui, &mut is_open, |ui| {
-            self.panel_ui(ui, |panels| &mut panels.log)
-        });
-        self.state.open.log = is_open;
+        self.bottom_panel(
+            ui,
+            ("trade", [304.0, 190.0]),
+            |open| &mut open.trade,
+            |panels| &mut panels.trade,
+        );
+        self.bottom_panel(
+            ui,
+            ("timing", [230.0, 150.0]),
+            |open| &mut open.timing,
+            |panels| &mut panels.timing,
+        );
+        self.bottom_panel(
+            ui,
+            ("log", [150.0, 72.0]),
+            |open| &mut open.log,
+            |panels| &mut panels.log,
+        );
         let window = ui.ctx().content_rect().width();
         let [left_width, right_width] = self.state.settings.panel_widths(window);
         // Where there is no room for both, the text stands in place of the presets.

@@ -1,7 +1,7 @@
 //! Escape closes what is open, the innermost first: a menu or dialog, a scene that is loading, the
 //! field that is typed into, a choice in the picture, a window, a panel.
 
-use eframe::egui::{self, Key, Modifiers};
+use egui::{self, Key, Modifiers};
 
 use super::app::App;
 use crate::app::{

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use eframe::egui::{self, Event, Key, KeyboardShortcut};
+use egui::{self, Event, Key, KeyboardShortcut};
 
 use super::typing::HeldTyping;
 use crate::app::{

@@ -2,8 +2,6 @@
 
 use std::path::Path;
 
-use eframe::egui;
-
 use super::app::App;
 use crate::app::{
     settings::OpenPanels,

@@ -2,7 +2,7 @@
 //! click that begins and ends within one frame, and a press is taken to be where the pointer is at
 //! the frame's end. While a frame is slow, as on a software adapter, much happens in one.
 
-use eframe::egui::{self, Event, Plugin, RawInput};
+use egui::{self, Event, Plugin, RawInput};
 
 /// Ends the events of a frame after a press, and before a release that follows a motion; the others
 /// wait for the next frame.
@@ -53,7 +53,7 @@ fn end_of_frame(events: &[Event]) -> usize {
 
 #[cfg(test)]
 mod tests {
-    use eframe::egui::{Modifiers, PointerButton, Pos2, pos2};
+    use egui::{Modifiers, PointerButton, Pos2, pos2};
 
     use super::*;
 

@@ -1,7 +1,5 @@
 //! The window on a desktop: opening it, and opening it again when the graphics device is lost.
 
-use eframe::{egui, egui_wgpu};
-
 use super::{
     app::{App, Options},
     loss::LossFlag,

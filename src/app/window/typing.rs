@@ -1,7 +1,7 @@
 //! Typing while a dialog opens: text that arrives before the text field of the dialog has the focus
 //! waits for it, so that it is neither lost nor taken for shortcuts.
 
-use eframe::egui::{self, Event};
+use egui::{self, Event};
 
 /// Events that wait for a text field, in order.
 #[derive(Default)]

@@ -6,58 +6,43 @@ use rasterlab::{oracle, preset_file};
 
 use super::*;
 
-/// Two triangles, a square from (-1, -1) to (1, 1) in the plane z = x; number 0 lies below its
-/// diagonal.
-const MODEL: &str = r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
-    "meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"buffers":[{"byteLength":72,"uri":"square.bin"}],
-    "bufferViews":[{"buffer":0,"byteLength":72}],
-    "accessors":[{"bufferView":0,"componentType":5126,"count":6,"type":"VEC3","min":[-1,-1,-1],"max":[1,1,1]}]}"#;
-
-const CORNERS: [[f32; 2]; 6] = [
-    [-1., -1.],
-    [1., -1.],
-    [1., 1.],
-    [-1., -1.],
-    [1., 1.],
-    [-1., 1.],
-];
-
 const SIZE: [usize; 2] = [40, 20];
 
-fn folder() -> tempfile::TempDir {
-    let folder = tempfile::tempdir().unwrap();
-    let bytes: Vec<u8> = CORNERS
-        .iter()
-        .flat_map(|[x, y]| [*x, *y, *x])
-        .flat_map(f32::to_le_bytes)
-        .collect();
-    fs::write(folder.path().join("square.bin"), bytes).unwrap();
-    fs::write(folder.path().join("square.gltf"), MODEL).unwrap();
-    folder
-}
-
 /// Draws the square from (0, 0, 4) with the oracle.
-fn render(folder: &Path, extra: &[&str]) -> Run {
-    let eye = [
-        "--set",
-        "camera.eye=[0,0,4]",
-        "--set",
-        "camera.target=[0,0,0]",
+const RENDER: &str =
+    "render square.gltf CPU40x20 --set camera.eye=[0,0,4] --set camera.target=[0,0,0]";
+
+/// With two triangles, a square from (-1, -1) to (1, 1) in the plane z = x; number 0 lies below its
+/// diagonal.
+fn square() -> Place {
+    let corners = [
+        [-1f32, -1.],
+        [1., -1.],
+        [1., 1.],
+        [-1., -1.],
+        [1., 1.],
+        [-1., 1.],
     ];
-    let base = [
-        "render",
-        "square.gltf",
-        "--adapter",
-        "cpu",
-        "--size",
-        "40x20",
-    ];
-    run_in(folder, &[&base[..], &eye, extra].concat())
+    let numbers = corners.iter().flat_map(|[x, y]| [*x, *y, *x]);
+    let place = Place::new();
+    place.put(
+        "square.bin",
+        numbers.flat_map(f32::to_le_bytes).collect::<Vec<u8>>(),
+    );
+    let data = TRIANGLE
+        .split('"')
+        .find(|text| text.starts_with("data:"))
+        .unwrap();
+    let model = TRIANGLE
+        .replace(data, "square.bin")
+        .replace("\"byteLength\":36", "\"byteLength\":72");
+    place.put("square.gltf", model.replace("\"count\":3", "\"count\":6"));
+    place
 }
 
 /// The numbers of a .npy file of version 1.0 with this kind and the shape of `SIZE`, as words.
-fn words(path: &Path, kind: &str, [width, height]: [usize; 2]) -> Vec<u32> {
-    let bytes = fs::read(path).unwrap();
+fn words(place: &Place, name: &str, kind: &str, [width, height]: [usize; 2]) -> Vec<u32> {
+    let bytes = place.read(name);
     assert_eq!(&bytes[..8], b"\x93NUMPY\x01\x00");
     let length = usize::from(u16::from_le_bytes([bytes[8], bytes[9]]));
     let header = std::str::from_utf8(&bytes[10..10 + length]).unwrap();
@@ -65,10 +50,9 @@ fn words(path: &Path, kind: &str, [width, height]: [usize; 2]) -> Vec<u32> {
         (10 + length).is_multiple_of(64) && header.ends_with('\n'),
         "{header:?}"
     );
-    assert_eq!(
-        header.trim_end(),
-        format!("{{'descr': '{kind}', 'fortran_order': False, 'shape': ({height}, {width}), }}")
-    );
+    let wanted =
+        format!("{{'descr': '{kind}', 'fortran_order': False, 'shape': ({height}, {width}), }}");
+    assert_eq!(header.trim_end(), wanted);
     let numbers = &bytes[10 + length..];
     assert_eq!(numbers.len(), width * height * 4);
     numbers
@@ -84,30 +68,15 @@ fn ids_and_depths_are_those_of_the_plane_that_was_drawn() {
         ("camera.fov_y_deg=45", true),
         ("camera.orthographic_height_m=4", false),
     ] {
-        let folder = folder();
-        let run = render(
-            folder.path(),
-            &[
-                "--set",
-                lens,
-                "--unset",
-                "ground",
-                "--triangle-ids",
-                "{preset}-ids.npy",
-                "--depths",
-                "d.npy",
-                "--json",
-            ],
-        );
-        assert_eq!(run.code, 0, "{}", run.err);
-        let result = json(&run)["results"][0].clone();
-        assert_eq!(
-            (&result["file"], &result["triangle_ids"]),
-            (&"square.png".into(), &"square-ids.npy".into())
-        );
-        assert_eq!(result["depths"], "d.npy");
-        let ids = words(&folder.path().join("square-ids.npy"), "<u4", SIZE);
-        let depths = words(&folder.path().join("d.npy"), "<f4", SIZE);
+        let place = square();
+        place.play(&format!(
+            "$ {RENDER} --set {lens} --unset ground --triangle-ids {{preset}}-ids.npy --depths d.npy --json
+            /results/0/file \"square.png\"
+            /results/0/triangle_ids \"square-ids.npy\"
+            /results/0/depths \"d.npy\""
+        ));
+        let ids = words(&place, "square-ids.npy", "<u4", SIZE);
+        let depths = words(&place, "d.npy", "<f4", SIZE);
         let mut seen = [0, 0, 0];
         for (at, (id, bits)) in ids.into_iter().zip(depths).enumerate() {
             let [column, row] = [at % SIZE[0], at / SIZE[0]].map(|pixel| pixel as f64 + 0.5);
@@ -119,13 +88,12 @@ fn ids_and_depths_are_those_of_the_plane_that_was_drawn() {
             } else {
                 (4.0 - 2.0 * across, [2.0 * across, 2.0 * up])
             };
-            if [(x.abs() - 1.0).abs(), (y.abs() - 1.0).abs(), (x - y).abs()]
-                .iter()
-                .any(|distance| *distance < 1e-3)
-            {
+            let edges = [x.abs() - 1.0, y.abs() - 1.0, x - y];
+            if edges.iter().any(|distance: &f64| distance.abs() < 1e-3) {
                 continue;
             }
-            let expected = if x.abs() > 1.0 || y.abs() > 1.0 {
+            let is_outside = x.abs() > 1.0 || y.abs() > 1.0;
+            let expected = if is_outside {
                 u32::MAX
             } else {
                 u32::from(y > x)
@@ -133,10 +101,10 @@ fn ids_and_depths_are_those_of_the_plane_that_was_drawn() {
             assert_eq!(id, expected, "{lens}: pixel {at}");
             seen[expected.min(2) as usize] += 1;
             let found = f64::from(f32::from_bits(bits));
-            assert_eq!(found.is_nan(), id == u32::MAX, "{lens}: pixel {at}");
+            assert_eq!(found.is_nan(), is_outside, "{lens}: pixel {at}");
             assert!(
-                id == u32::MAX || (found / depth - 1.0).abs() < 1e-3,
-                "{lens}: pixel {at} is at {found} m, the plane at {depth} m"
+                is_outside || (found / depth - 1.0).abs() < 1e-3,
+                "{lens}: pixel {at} is at {found} m, not {depth}"
             );
         }
         assert!(seen.iter().all(|count| *count > 30), "{seen:?}");
@@ -145,29 +113,13 @@ fn ids_and_depths_are_those_of_the_plane_that_was_drawn() {
 
 #[test]
 fn the_arrays_are_those_of_the_oracles_frame() {
-    let folder = tempfile::tempdir().unwrap();
+    let place = Place::new();
     let size = [48, 36];
     for (name, scale) in [("cube-wall", "full"), ("facet-knot", "half")] {
-        let scale_key = format!("accuracy.render_scale={scale}");
-        let args = [
-            "render",
-            name,
-            "--adapter",
-            "cpu",
-            "--size",
-            "48x36",
-            "--set",
-            &scale_key,
-            "--triangle-ids",
-            "{preset}.npy",
-        ];
-        let run = run_in(folder.path(), &args);
-        assert_eq!(
-            (run.code, run.out.as_str()),
-            (0, format!("{name}.png\n{name}.npy\n").as_str()),
-            "{}",
-            run.err
-        );
+        place.play(&format!(
+            "$ render {name} CPU48x36 --set accuracy.render_scale={scale} --triangle-ids {{preset}}.npy
+            >= {name}.png\\n{name}.npy\\n"
+        ));
         let mut file = preset_file::open(name, &Default::default()).unwrap();
         preset_file::set(&mut file, "accuracy.render_scale", scale).unwrap();
         let scene = preset_file::load_scene(&file.preset, None).unwrap();
@@ -175,95 +127,49 @@ fn the_arrays_are_those_of_the_oracles_frame() {
         let frame =
             oracle::render_scaled(&scene, &file.preset.moments(&scene, size), factor).unwrap();
         assert!(frame.covered() > 100);
-        assert_eq!(
-            words(
-                &folder.path().join(format!("{name}.npy")),
-                "<u4",
-                size.map(|side| side as usize)
-            ),
-            frame.triangle_id,
-            "{name}"
+        let ids = words(
+            &place,
+            &format!("{name}.npy"),
+            "<u4",
+            size.map(|side| side as usize),
         );
+        assert_eq!(ids, frame.triangle_id, "{name}");
     }
 }
 
 #[test]
 fn arrays_follow_the_rules_of_pictures() {
-    let folder = folder();
-    let is_there = |name: &str| folder.path().join(name).exists();
-    let refused = |run: Run, words: &str| {
-        assert_eq!((run.code, run.out.as_str()), (2, ""), "{}", run.err);
-        assert_eq!(
-            run.err
-                .lines()
-                .filter(|line| line.starts_with("error: "))
-                .count(),
-            1,
-            "{}",
-            run.err
-        );
-        assert!(
-            run.err.contains(words),
-            "{words:?} is missing in {}",
-            run.err
-        );
-        assert!(!is_there("square.png"), "it was drawn");
-    };
+    let place = square();
+    let transcript = r"
+        @ old.npy mine
+        $2 RENDER FLAG old.npy
+        ! old.npy exists; use --force
+        @ mine.npy mine
+        == old.npy mine.npy
+        $2 RENDER FLAG -
+        ! arrays are written to files
+        $2 RENDER FLAG {presett}.npy
+        ! unknown placeholder
+        $2 RENDER FLAG a.npy facet -o {preset}.png
+        ! put {preset} or {n}
+        $2 RENDER FLAG a.png -o a.png
+        ! names the same file
+        $2 RENDER FLAG no/folder/a.npy -o -
+        ! no/folder
+        $2 RENDER --depths a.npy --triangle-ids a.npy
+        ! --triangle-ids names the same file
+        - square.png
+        $ RENDER FLAG old.npy --force -o forced.png
+        >= forced.png\nold.npy\n
+        @- forced.png
+    ";
     for flag in ["--triangle-ids", "--depths"] {
-        fs::write(folder.path().join("old.npy"), "mine").unwrap();
-        refused(
-            render(folder.path(), &[flag, "old.npy"]),
-            "old.npy exists; use --force",
-        );
-        assert_eq!(fs::read(folder.path().join("old.npy")).unwrap(), b"mine");
-        let forced = render(
-            folder.path(),
-            &[flag, "old.npy", "--force", "-o", "forced.png"],
-        );
-        assert_eq!(
-            (forced.code, forced.out.as_str()),
-            (0, "forced.png\nold.npy\n"),
-            "{}",
-            forced.err
-        );
-        assert_ne!(fs::read(folder.path().join("old.npy")).unwrap(), b"mine");
-        refused(
-            render(folder.path(), &[flag, "-"]),
-            "arrays are written to files",
-        );
-        refused(
-            render(folder.path(), &[flag, "{presett}.npy"]),
-            "unknown placeholder",
-        );
-        refused(
-            render(
-                folder.path(),
-                &[flag, "a.npy", "facet", "-o", "{preset}.png"],
-            ),
-            "put {preset} or {n}",
-        );
-        refused(
-            render(folder.path(), &[flag, "a.png", "-o", "a.png"]),
-            "names the same file",
-        );
-        refused(
-            render(folder.path(), &[flag, "no/folder/a.npy", "-o", "-"]),
-            "no/folder",
-        );
+        place.play(&transcript.replace("RENDER", RENDER).replace("FLAG", flag));
+        assert_ne!(place.read("old.npy"), b"mine");
     }
-    refused(
-        render(
-            folder.path(),
-            &["--depths", "a.npy", "--triangle-ids", "a.npy"],
-        ),
-        "--triangle-ids names the same file",
-    );
-    let piped = render(
-        folder.path(),
-        &["-o", "-", "--triangle-ids", "ids_{n:2}.npy"],
-    );
+    let piped = place.run(&format!("{RENDER} -o - --triangle-ids ids_{{n:2}}.npy"));
     assert!(
-        piped.code == 0 && piped.bytes.starts_with(b"\x89PNG") && is_there("ids_01.npy"),
+        piped.code == 0 && piped.bytes.starts_with(b"\x89PNG") && place.has("ids_01.npy"),
         "{}",
         piped.err
     );

@@ -3,6 +3,8 @@
 //! and beside all built-in effects. Needs no adapter.
 
 mod accepted;
+mod duplicates;
+mod given;
 mod mutated;
 mod numerics;
 mod pictures;

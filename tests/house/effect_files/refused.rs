@@ -30,160 +30,38 @@ fn try_refused(marked: &str, words: &str) -> Result<(), String> {
     Ok(())
 }
 
-/// Every line is a case; ¶ in it is a line break.
-fn all(cases: &str, wrap: impl Fn(&str) -> String) {
-    let faults: Vec<String> = cases
-        .trim()
-        .lines()
-        .map(|line| line.rsplit_once("// ").unwrap_or((line, "")))
-        .filter_map(|(case, words)| {
+/// Structs of parameters and the hook of a pass, AT, beside these functions.
+fn with_hooks(hooks: &str) -> String {
+    let at = "fn f(at: ImageAt, p: Q) -> vec4f { return vec4f(0.0); }";
+    let structs = "struct P { @range(0.0, 1.0, 0.5) @unit(m) amount: f32 }\nstruct Q { @range(0.0, 1.0, 0.5) amount: f32 }";
+    format!("{structs}\n{}\n", hooks.replace("AT", at))
+}
+
+/// Every line of the file is a case; ¶ in it is a line break. A line of `===` says where they stand.
+#[test]
+fn every_mistake_is_refused_at_its_place() {
+    let mut faults = Vec::new();
+    for part in include_str!("refused.txt").split("=== ").skip(1) {
+        let (place, cases) = part.split_once('\n').expect("a place and its cases");
+        let wrap: fn(&str) -> String = match place.split(' ').next() {
+            Some("in") if place.starts_with("in a function") => with_statements,
+            Some("in") => with_members,
+            Some("beside") => with_declarations,
+            Some("hooks") => with_hooks,
+            Some("arrays") => |case| with_statements(case) + "const MANY = 5000;",
+            _ => panic!("the file has no cases for {place}"),
+        };
+        for line in cases.lines().filter(|line| !line.is_empty()) {
+            let (case, words) = line.rsplit_once("// ").unwrap_or((line, ""));
             let case = case.trim().replace('¶', "\n");
-            try_refused(&wrap(&case), words.trim()).err()
-        })
-        .collect();
+            faults.extend(try_refused(&wrap(&case), words.trim()).err());
+        }
+    }
     assert!(faults.is_empty(), "{}", faults.join("\n\n"));
 }
 
 #[test]
-fn statements_with_a_mistake() {
-    let cases = r##"
-let x = «; // expected
-let x = 1.0 «let y = 2.0; // expected
-const x = «reflect(vec2f(1.0), vec2f(0.0, 1.0)); // write let in a function in place of const
-var x = «smoothstep(0.0, 1.0, 0.25); // as in 0.5f
-let x = «missing; // missing
-let x = «missing(1.0); // missing
-let «x: u32 = 1.5; // u32
-let «x: vec3f = vec2f(1.0); // vec3
-s.color = «1.0;
-s.color.«q = 1.0; // q
-s.«colour = vec4f(1.0); // colour
-s.color = «vec4f(1.0) * vec3f(1.0); // Multiply
-if «1.0 { s.rank = 0.0; }
-p.amount = 1.0;
-var x: f64 = 1.0;
-var x: f16 = 1.0h;
-var x: «Missing; // Missing
-let x = «helper(1.0, 2.0); // takes 1, and 2
-let x = helper(true);
-let x = vec3f(1.0)[7];
-let a = array(1.0, 2.0); let x = a[5];
-return 1.0;
-return;
-«break;
-«continue;
-switch 1u { case 1u: { } case 1u: { } default: { } }
-let fn = 1.0; // fn
-let «class = 1.0; // class
-let x = 1.0; let «x = 2.0; // x
-goto «end;
-s.rank = 1.0 / (1.0 - 1.0) + 0.5;
-let x = 99999999999999999999;
-let x = 1e999;
-let x = sqrt(«"text");
-let x = «#1;
-let x = 1.0 $ 2.0;
-s.rank = mix(0.0, 1.0);
-s.rank = dot(1.0, 2.0);
-s.rank = bitcast<f32>(vec2u(1u));
-let x = &s.color.x;
-*s = surface;
-s += surface;
-s.triangle_id += 1.0;
-loop { continuing { break if 1.0; } }
-for (var i = 0u; i < 4.0; i++) { }
-const c = s.rank;
-const_assert «1 > 2;
-var x = vec3<f32, f32>(1.0);
-let x = «effects.ink.amount; // effects
-let x = «frame.size; // frame
-s.color = «color[0]; // color
-let x = «hash(1u); // //@ use lib/hash
-s.color = «color_pack(s.color);
-s = ink(s, p); // ink
-"##;
-    all(cases, with_statements);
-}
-
-#[test]
-fn what_only_kernels_may_do() {
-    let statements = "
-«workgroupBarrier(); // barriers
-«storageBarrier(); // barriers
-«subgroupBarrier(); // subgroup
-let x = «quadSwapX(1.0); // subgroup
-let x = «dpdx(s.rank); // derivatives
-let x = «dpdyFine(s.rank); // derivatives
-let x = «fwidth(s.rank); // derivatives
-let x = «textureLoad(t, vec2i(0), 0); // textures
-let x = «atomicAdd(&s.triangle_id, 1u); // atomics
-var x: «atomic<u32>; // atomics
-let x = «arrayLength(&s); // bindings
-«discard; // discard
-var<«workgroup> x: u32; // workgroup memory
-var<«private> x: u32; // variables outside functions
-var<«storage> x: u32; // bindings
-let x: ptr<«uniform, f32> = &s.rank; // bindings
-var x: «sampler; // textures
-var x: «texture_2d<f32>; // textures
-";
-    all(statements, with_statements);
-    let declarations = r#"
-«var<private> x: u32; // module scope
-«var<storage, read_write> x: array<u32, 4>; // module scope
-«@group(0) @binding(0) var<uniform> x: u32; // no binding
-«@compute @workgroup_size(1) fn main() { } // entry point
-«@must_use fn more() -> f32 { return 1.0; } // attributes
-«override SCALE: f32 = 1.0; // override
-«@id(3) override SCALE: f32 = 1.0; // attributes
-«enable f16; // directives
-«requires readonly_and_readwrite_storage_textures; // directives
-«diagnostic(off, derivative_uniformity); // directives
-«import package::x; // expected
-«#include "x" // expected
-«5 // expected
-«} // closes nothing
-«) // closes nothing
-"#;
-    all(declarations, with_declarations);
-}
-
-#[test]
 fn names_that_are_taken() {
-    let declarations = "
-fn «helper(x: u32) -> u32 { return x; } // already declared
-const «helper = 1.0; // already declared
-struct «Ink { x: f32 } // already declared
-fn «Surface() -> f32 { return 1.0; } // hook
-alias «Sample = f32; // hook
-fn «mix(x: f32) -> f32 { return x; } // WGSL itself
-struct «vec3f { x: f32 } // WGSL itself
-alias «f32 = u32; // WGSL itself
-fn «class(x: f32) -> f32 { return x; } // reserved
-const «_ = 1.0; // reserved
-const «__x = 1.0; // reserved
-struct Twice { x: f32, «x: f32 }¶fn twice(t: Twice) -> f32 { return t.x; }
-fn «more // incomplete
-fn «more() -> f32; // incomplete
-«fn (x: f32) { } // name
-«struct { x: f32 } // name
-struct «More; // members
-struct Empty { }¶fn empty(e: Empty) { }
-const x = «1.0 // missing
-const x = 1.0 +«;
-const «x: u32 = 1.5; // u32
-alias A = «Missing; // Missing
-const A = B; const «B = A; // cyclic
-struct A { b: B } struct B { a: A }
-const_assert «false;
-fn more(x: f32, x: f32) -> f32 { return x; }
-fn more(x: f32) -> f32 { }
-fn more(x: Missing) -> f32 { return 1.0; } // Missing
-fn more(x) -> f32 { return 1.0; }
-fn again(x: f32) -> f32 { return again(x); } // again
-fn a(x: f32) -> f32 { return b(x); }¶fn b(x: f32) -> f32 { return a(x); }
-";
-    all(declarations, with_declarations);
     let choice = "@choice(a, b-c, b_c) mode: u32,";
     refused(&with_members(choice), "INK_MODE_B_C");
     let constant = with_members("@choice(a, b) mode: u32,") + "const «INK_MODE_A = 1u;";
@@ -200,87 +78,7 @@ fn a(x: f32) -> f32 { return b(x); }¶fn b(x: f32) -> f32 { return a(x); }
 }
 
 #[test]
-fn members_with_a_mistake() {
-    let cases = "
-«amount: f32, // needs @range
-«@range(NaN, 1.0, 0.5) amount: f32, // finite
-«@range(0.0, inf, 0.5) amount: f32, // finite
-«@range(0.0, 1e39, 0.5) amount: f32, // finite
-«@range(1.0, 1.0, 1.0) amount: f32, // empty
-«@range(0.0, 1e-60, 0.0) amount: f32, // empty in f32
-«@range(0.0, 1.0, 2.0) amount: f32, // outside
-«@range(0.0, 1.0, x) amount: f32, // finite
-«@range(0.0, 1.0, ) amount: f32, // finite
-«@range(0.0, 1.0) amount: f32, // takes min, max, default and nothing else
-«@range() amount: f32, // takes
-«@range amount: f32, // takes
-@range(0.0, 1.0, 0.5 amount: f32, // must close
-«@range(0, 1, 0, 0.1) amount: f32, // takes min, max, default and nothing else
-«@range(0.5, 4, 1) count: u32, // whole
-@range(0, 4, 1.5) «count: u32, // whole
-«@range(-1, 4, 1) count: u32, // use i32 for negative numbers
-«@range(0, 1e10, 1) count: u32, // lies within
-«@range(-3e9, 4, 1) count: i32, // lies within
-@range(0, 4, 1) «@hard(-5, 10) count: u32, // lies within
-@range(0, 4, 1) «@hard(1, 10) count: u32, // contain
-@range(0, 4, 1) «@hard(4, 0) count: u32, // ascending
-@range(0, 4, 1) «@hard(0) count: u32, // takes
-@range(0, 4, 9) @hard(0, 5) «count: u32, // default
-«@rnge(0.0, 1.0, 0.5) amount: f32, // range
-@range(0.0, 1.0, 0.5) «@range(0.0, 1.0, 0.5) amount: f32, // twice
-@range(0.0, 1.0, 0.5) «@toggle(0) amount: f32, // exclude
-«@toggle(0) amount: f32, // does not fit
-«@toggle(2) on_off: u32, // 0 or 1
-«@toggle on_off: u32, // 0 or 1
-«@color(1.0, 0.0, 0.0) tint: f32, // does not fit
-«@color(1.0, 0.0) tint: vec4f, // takes
-@color(2.0, 0.0, 0.0) «tint: vec4f, // default
-«@color(red) tint: vec4f, // takes
-«@point(1.0, 0.0) at: vec4f, // takes
-«@point(1.0, 0.0, NaN) at: vec4f, // finite
-@point(1e9, 0.0, 0.0) «at: vec4f, // default
-«tint: vec4f, // needs @color
-@color(1, 0, 0) «tint: vec3f, // a parameter is
-@range(0, 1, 0) «x: array<f32, 4>, // a parameter is
-@range(0, 1, 0) «x: , // needs a type
-@range(0, 1, 0) «x: // needs a type
-@range(0, 1, 0) «x // needs a type
-@range(0, 1, 0) // name: type
-@ // name after @
-@range(0, 1, 0.5) x: f32 «@range(0, 1, 0.5) y: f32 // expected ,
-@range(0, 1, 0.5) x: f32«; @range(0, 1, 0.5) y: f32 // expected ,
-«@choice(a) mode: u32, // 2 to 32
-«@choice(a, a) mode: u32, // different
-«@choice(A, B) mode: u32, // small letters
-«@choice(a b, c) mode: u32, // small letters
-«@choice(é, c) mode: u32, // small letters
-«@choice(a, b) mode: f32, // does not fit
-@choice(a, b) «@default(c) mode: u32, // takes one of
-@choice(a, b) «@default mode: u32, // takes one of
-@range(0, 1, 0.5) «@default(0.5) x: f32, // belongs to @choice
-@range(0, 1, 0.5) «@when(mode, a) x: f32, // no choice mode
-@range(0, 1, 0.5) y: f32, @range(0, 1, 0.5) «@when(y, a) x: f32, // no choice y
-@choice(a, b) mode: u32, @range(0, 1, 0.5) «@when(mode, c) x: f32, // no word c
-@choice(a, b) mode: u32, @range(0, 1, 0.5) «@when(mode) x: f32, // takes the name
-@choice(a, b) mode: u32, @range(0, 1, 0.5) «@when x: f32, // takes the name
-@choice(a, b) mode: u32, @range(0, 1, 0.5) «@when(mode, a¶b) x: f32, // no word
-@range(0, 1, 0.5) «@log x: f32, // above 0
-@range(1, 2, 1) «@log(2) x: f32, // @log
-@range(1, 2, 1) «@log x: u32, // @log
-@range(1, 2, 1) «@unit x: f32, // @unit
-@range(1, 2, 1) «@unit() x: f32, // @unit
-@range(1, 2, 1) «@unit(a, b) x: f32, // @unit
-@range(1, 2, 1) «@unit(kilometers) x: f32, // @unit
-@range(1, 2, 1) «@unit(a¶b) x: f32, // @unit
-«@align(16) x: f32, // no attribute
-@range(0, 1, 0.5) x: f32, @range(0, 1, 0.5) «x: f32, // twice
-@range(0, 1, 0.5) «effect: f32, // preset
-@range(0, 1, 0.5) «on: f32, // preset
-@range(0, 1, 0.5) «static: f32, // reserved
-@range(0, 1, 0.5) «höhe: f32, // letters
-@range(0, 1, 0.5) «_x: f32, // letters
-";
-    all(cases, with_members);
+fn too_many_members_or_none() {
     refused(&with_members(""), "at least one member");
     let member = |index: usize| format!("@range(0, 1, 0.5) x{index}: f32,\n");
     let many: String = (0..65).map(member).collect();
@@ -290,39 +88,7 @@ fn members_with_a_mistake() {
 }
 
 #[test]
-fn hooks_with_a_mistake() {
-    let cases = "
-fn «f(s: Surface) -> Surface { return s; } // signature
-fn «f(s: Surface, p: P) { } // signature
-fn «f(s: Surface, p: P) -> vec4f { return s.color; } // signature
-fn «f(s: Surface, p: f32) -> Surface { return s; } // signature
-fn «f(s: Surface, p: P, q: f32) -> Surface { return s; } // signature
-fn «f(s: Sample, p: P) -> Sample { return s; } // signature
-fn «f(s: Surface, p: Surface) -> Surface { return s; } // signature
-fn «f(s: Surface, p: array<f32, 4>) -> Surface { return s; } // signature
-fn f(s: Surface, p: «R) -> Surface { return s; } // R
-fn f(s: Surface, p: P) -> Surface { return s; }¶fn «g(s: Surface, p: P) -> Surface { return s; } // both
-fn f(s: Surface, p: P) -> Surface { return s; }¶fn «g(x: Pixel, p: Q) -> Pixel { return x; } // same struct
-fn «f(v: Vertex, p: Q) -> Vertex { return v; } // @unit(m)
-fn f(s: Surface, p: Q) -> Surface { return s; }¶fn «g(x: Pixel, p: Q) -> Pixel { return x; } // no other hook
-fn h(s: Surface, p: Q) -> Surface { return s; }¶AT // no other hook
-@pass(half)¶fn «f(at: ImageAt, p: Q) -> vec4f { return vec4f(0.0); } // last pass
-«@pass(third)¶AT // full, half or quarter
-@pass(half)¶fn «g(x: f32) -> f32 { return x; }¶AT // no pass
-@kept(4, 0.1)¶fn «f(at: ImageAt, p: Q) -> vec4f { return image_kept(at.x, at.y); } // is not kept; write another pass after it
-@kept(4, 0.1)¶fn g(at: ImageAt, p: Q) -> vec4f { return vec4f(0.0); }¶@kept(2, 0.1) @pass(half)¶fn «h(at: ImageAt, p: Q) -> vec4f { return vec4f(0.0); }¶AT // g and h are both kept
-«@kept(33, 0.1)¶fn g(at: ImageAt, p: Q) -> vec4f { return vec4f(0.0); }¶AT // 1 to 32 earlier frames
-«@kept(4, 0)¶fn g(at: ImageAt, p: Q) -> vec4f { return vec4f(0.0); }¶AT // above 0 and at most 60
-@kept(4, 0.1)¶fn «g(x: f32) -> f32 { return x; }¶AT // @kept stands before g, which is no pass
-fn f(at: ImageAt, p: Q) -> vec4f { return «image_kept(at.x, at.y); } // write @kept(12, 0.04) before a pass
-fn f(at: ImageAt, p: Q) -> vec4f { return «image_background(); } // pixel effect
-";
-    let at = "fn f(at: ImageAt, p: Q) -> vec4f { return vec4f(0.0); }";
-    let with_hooks = |hooks: &str| {
-        let structs = "struct P { @range(0.0, 1.0, 0.5) @unit(m) amount: f32 }\nstruct Q { @range(0.0, 1.0, 0.5) amount: f32 }";
-        format!("{structs}\n{}\n", hooks.replace("AT", at))
-    };
-    all(cases, with_hooks);
+fn files_without_a_hook() {
     let reading = "//@ use lib/image\nfn f(s: Surface, p: Q) -> Surface { return s; }";
     refused(&with_hooks(reading), "no other hook");
     refused(&with_hooks(""), "no function has the signature");
@@ -417,22 +183,6 @@ fn what_is_too_large_or_too_deep() {
             refused(&with_statements(&statement), "operators");
         }
     }
-    let arrays = "
-var a: array<f32, «100000000>; // length
-var a: array<f32, «0>; // length
-var a: array<f32, «-1>; // length
-var a: array<f32, «1 << 20>; // length
-var a: array<f32, «MANY>; // length
-var a: «array<f32>; // length
-let x = array<u32, «0xffffffff>()[7]; // length
-var a: «array<f32; // not closed
-«var a: array<f32, 4096>; // bytes
-var a: array<array<array<array<array<f32, 2>, 2>, 2>, 2>, 2>; // inside each other
-let a = array<array<f32, 4096>, 4096>(); // bytes
-";
-    all(arrays, |statement| {
-        with_statements(statement) + "const MANY = 5000;"
-    });
     let doubling: String = (1..30)
         .map(|level| format!("struct S{level} {{ a: S{0}, b: S{0} }}\n", level - 1))
         .collect();

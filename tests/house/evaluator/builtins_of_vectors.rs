@@ -76,21 +76,13 @@ fn half(bits: u32) -> f64 {
 #[test]
 fn half_precision() {
     let unpack = program("fn f(a: u32) -> vec2f { return unpack2x16float(a); }", "f");
-    let pack = program(
-        "fn f(a: f32) -> u32 { return pack2x16float(vec2(0.0, a)) >> 16u; }",
-        "f",
-    );
+    let pack = "fn f(a: f32) -> u32 { return pack2x16float(vec2(0.0, a)) >> 16u; }";
+    let pack = program(pack, "f");
     let quantize = program("fn f(a: f32) -> f32 { return quantizeToF16(a); }", "f");
-    let (mut unpack, mut pack, mut quantize) =
-        (unpack.machine(), pack.machine(), quantize.machine());
+    let mut machines = [&unpack, &pack, &quantize].map(|program| program.machine());
     let mut run = |argument: Word, at: usize| -> Word {
-        let machine = [&mut unpack, &mut pack, &mut quantize]
-            .into_iter()
-            .nth(at)
-            .expect("three machines");
-        machine
-            .call(&[argument], &mut rasterlab::evaluator::NoHost)
-            .expect("no loops")[0]
+        let result = machines[at].call(&[argument], &mut rasterlab::evaluator::NoHost);
+        result.expect("no loops")[0]
     };
     for bits in 0..0x10000u32 {
         let value = half(bits);
@@ -129,150 +121,43 @@ fn half_precision() {
 }
 
 #[test]
-fn geometric_functions() {
-    let ab = [1.0, -2.0, 3.0, 0.5, 0.25, -4.0];
-    vectors("a: vec3f, b: vec3f -> f32", "dot(a, b)", &ab, &[-12.0]);
-    vectors(
-        "a: vec3f, b: vec3f -> vec3f",
-        "cross(a, b)",
-        &ab,
-        &[8.0 - 0.75, 1.5 + 4.0, 0.25 + 1.0],
-    );
-    vectors(
-        "a: vec3f, b: vec3f -> f32",
-        "length(a)",
-        &ab,
-        &[14f64.sqrt()],
-    );
-    vectors(
-        "a: vec3f, b: vec3f -> f32",
-        "distance(a, b)",
-        &ab,
-        &[(0.25f64 + 5.0625 + 49.0).sqrt()],
-    );
-    let length = 14f64.sqrt();
-    vectors(
-        "a: vec3f, b: vec3f -> vec3f",
-        "normalize(a)",
-        &ab,
-        &[1.0 / length, -2.0 / length, 3.0 / length],
-    );
-    vectors(
-        "a: vec3f, b: vec3f -> vec3f",
-        "faceForward(a, b, a)",
-        &ab,
-        &[1.0, -2.0, 3.0],
-    );
-    vectors(
-        "a: vec3f, b: vec3f -> vec3f",
-        "faceForward(a, a, a)",
-        &ab,
-        &[-1.0, 2.0, -3.0],
-    );
-    vectors(
-        "a: vec3f, b: vec3f -> vec3f",
-        "reflect(a, vec3f(0.0, 1.0, 0.0))",
-        &ab,
-        &[1.0, 2.0, 3.0],
-    );
-    let (sine, ratio) = (0.6, 1.2);
-    let cosine = (1.0f64 - (ratio * sine) * (ratio * sine)).sqrt();
-    vectors(
-        "a: vec2f, b: vec2f, c: f32 -> vec2f",
-        "refract(a, b, c)",
-        &[sine, -0.8, 0.0, 1.0, ratio],
-        &[ratio * sine, -cosine],
-    );
-    vectors(
-        "a: vec2f, b: vec2f, c: f32 -> vec2f",
-        "refract(a, b, c)",
-        &[sine, -0.8, 0.0, 1.0, 2.0],
-        &[0.0, 0.0],
-    );
-    vectors(
-        "a: vec2f, t: f32 -> vec2f",
-        "mix(a, vec2f(1.0, 2.0), t)",
-        &[3.0, 4.0, 0.25],
-        &[2.5, 3.5],
-    );
-    vectors(
-        "a: vec2f -> vec2f",
-        "modf(a).fract + modf(a).whole * 10.0",
-        &[3.25, -4.5],
-        &[30.25, -40.5],
-    );
-    vectors(
-        "a: vec2f -> vec2f",
-        "frexp(a).fract + vec2f(frexp(a).exp)",
-        &[3.0, -0.25],
-        &[2.75, -1.5],
-    );
-}
-
-#[test]
-fn matrices() {
-    // Columns (1, 2, 3) and (4, 5, 6).
-    let m = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0];
-    let with = |more: &[f64]| [m.as_slice(), more].concat();
-    vectors(
-        "m: mat2x3f, v: vec2f -> vec3f",
-        "m * v",
-        &with(&[10.0, 100.0]),
-        &[410.0, 520.0, 630.0],
-    );
-    vectors(
-        "m: mat2x3f, v: vec3f -> vec2f",
-        "v * m",
-        &with(&[1.0, 10.0, 100.0]),
-        &[321.0, 654.0],
-    );
-    vectors(
-        "m: mat2x3f -> mat3x2f",
-        "transpose(m)",
-        &m,
-        &[1.0, 4.0, 2.0, 5.0, 3.0, 6.0],
-    );
-    vectors(
-        "m: mat2x3f -> mat2x2f",
-        "transpose(m) * m",
-        &m,
-        &[14.0, 32.0, 32.0, 77.0],
-    );
-    vectors(
-        "m: mat2x3f -> mat2x3f",
-        "m * 2.0 - m + 1.5 * m",
-        &m,
-        &m.map(|x| 2.5 * x),
-    );
-    vectors("m: mat2x3f -> vec3f", "m[1].zyx", &m, &[6.0, 5.0, 4.0]);
-    vectors(
-        "m: mat2x2f -> f32",
-        "determinant(m)",
-        &[1.0, 2.0, 3.0, 4.0],
-        &[-2.0],
-    );
-    vectors(
-        "m: mat3x3f -> f32",
-        "determinant(m)",
-        &[2.0, 0.0, 1.0, 1.0, 3.0, 2.0, 1.0, 1.0, 4.0],
-        &[18.0],
-    );
-    let four = [
-        2.0, 0.0, 1.0, 3.0, 1.0, 3.0, 2.0, -1.0, 1.0, 1.0, 4.0, 0.0, 5.0, 2.0, -2.0, 1.0,
-    ];
-    // By elimination.
-    let mut rows: Vec<Vec<f64>> = four.chunks(4).map(<[f64]>::to_vec).collect();
-    let mut determinant = 1.0;
-    while let Some((first, rest)) = rows.split_first() {
-        determinant *= first[0];
-        let eliminated = |row: &Vec<f64>| {
-            row.iter()
-                .zip(first)
-                .skip(1)
-                .map(|(x, y)| x - row[0] / first[0] * y)
+fn geometric_functions_and_matrices() {
+    // M has the columns (1, 2, 3) and (4, 5, 6).
+    let cases = "
+a: vec3f, b: vec3f -> f32 | dot(a, b) | AB | -12
+a: vec3f, b: vec3f -> vec3f | cross(a, b) | AB | 7.25 5.5 1.25
+a: vec3f, b: vec3f -> f32 | length(a) | AB | 3.7416573867739413
+a: vec3f, b: vec3f -> f32 | distance(a, b) | AB | 7.369701486491838
+a: vec3f, b: vec3f -> vec3f | normalize(a) | AB | 0.2672612419124244 -0.5345224838248488 0.8017837257372732
+a: vec3f, b: vec3f -> vec3f | faceForward(a, b, a) | AB | 1 -2 3
+a: vec3f, b: vec3f -> vec3f | faceForward(a, a, a) | AB | -1 2 -3
+a: vec3f, b: vec3f -> vec3f | reflect(a, vec3f(0.0, 1.0, 0.0)) | AB | 1 2 3
+a: vec2f, b: vec2f, c: f32 -> vec2f | refract(a, b, c) | 0.6 -0.8 0 1 1.2 | 0.72 -0.6939740629158989
+a: vec2f, b: vec2f, c: f32 -> vec2f | refract(a, b, c) | 0.6 -0.8 0 1 2 | 0 0
+a: vec2f, t: f32 -> vec2f | mix(a, vec2f(1.0, 2.0), t) | 3 4 0.25 | 2.5 3.5
+a: vec2f -> vec2f | modf(a).fract + modf(a).whole * 10.0 | 3.25 -4.5 | 30.25 -40.5
+a: vec2f -> vec2f | frexp(a).fract + vec2f(frexp(a).exp) | 3 -0.25 | 2.75 -1.5
+m: mat2x3f, v: vec2f -> vec3f | m * v | M 10 100 | 410 520 630
+m: mat2x3f, v: vec3f -> vec2f | v * m | M 1 10 100 | 321 654
+m: mat2x3f -> mat3x2f | transpose(m) | M | 1 4 2 5 3 6
+m: mat2x3f -> mat2x2f | transpose(m) * m | M | 14 32 32 77
+m: mat2x3f -> mat2x3f | m * 2.0 - m + 1.5 * m | M | 2.5 5 7.5 10 12.5 15
+m: mat2x3f -> vec3f | m[1].zyx | M | 6 5 4
+m: mat2x2f -> f32 | determinant(m) | 1 2 3 4 | -2
+m: mat3x3f -> f32 | determinant(m) | 2 0 1 1 3 2 1 1 4 | 18
+m: mat4x4f -> f32 | determinant(m) | 2 0 1 3 1 3 2 -1 1 1 4 0 5 2 -2 1 | -109.0
+";
+    let cases = cases
+        .replace("AB", "1 -2 3 0.5 0.25 -4")
+        .replace("| M", "| 1 2 3 4 5 6");
+    for case in cases.trim().lines() {
+        let parts: Vec<&str> = case.split(" | ").collect();
+        let numbers = |at: usize| -> Vec<f64> {
+            parts[at]
+                .split(' ')
+                .map(|word| word.parse().expect("a number"))
                 .collect()
         };
-        rows = rest.iter().map(eliminated).collect();
+        vectors(parts[0], parts[1], &numbers(2), &numbers(3));
     }
-    vectors("m: mat4x4f -> f32", "determinant(m)", &four, &[determinant]);
 }

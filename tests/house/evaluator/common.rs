@@ -90,3 +90,22 @@ impl Random {
         (self.bits() % u64::from(below)) as u32
     }
 }
+
+/// Operators on numbers, and what they do.
+pub const OPERATORS: [(&str, fn(i32, i32) -> i32); 15] = [
+    ("(A + B)", i32::wrapping_add),
+    ("(A - B)", i32::wrapping_sub),
+    ("(A * B)", i32::wrapping_mul),
+    ("(A / B)", |a, b| a.checked_div(b).unwrap_or(a)),
+    ("(A % B)", |a, b| a.checked_rem(b).unwrap_or(0)),
+    ("(A & B)", |a, b| a & b),
+    ("(A | B)", |a, b| a | b),
+    ("(A ^ B)", |a, b| a ^ b),
+    ("(A << bitcast<u32>(B))", |a, b| a << (b & 31)),
+    ("(A >> bitcast<u32>(B))", |a, b| a >> (b & 31)),
+    ("min(A, B)", i32::min),
+    ("max(A, B)", i32::max),
+    ("(-A)", |a, _| a.wrapping_neg()),
+    ("(~A)", |a, _| !a),
+    ("select(A, B, B < 0)", |a, b| if b < 0 { b } else { a }),
+];

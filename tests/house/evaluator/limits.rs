@@ -20,97 +20,83 @@ fn endless_loops_stop() {
         fn inner(n: u32) -> u32 { var i = n; loop { i += 1u; if i == 0u && n == 1u { break; } } return i; }
         fn outer(n: u32) -> u32 { return inner(n) + 1u; }
         fn count(n: u32) -> u32 { var sum = 0u; for (var i = 0u; i < n; i++) { sum += i; } return sum; }";
-    let endless = program_with(
-        source,
-        "outer",
-        &Options {
-            limits: limits(100_000),
+    let limited = |function: &str, steps| {
+        let options = Options {
+            limits: limits(steps),
             ..Options::default()
-        },
-    );
+        };
+        program_with(source, function, &options)
+    };
+    let endless = limited("outer", 100_000);
     let stopped = endless
         .machine()
         .call(&[Word::from_u32(2)], &mut NoHost)
         .unwrap_err();
+    let function = "inner".to_owned();
     assert_eq!(
         stopped,
         EvalError::Steps {
             steps: 100_000,
-            function: "inner".to_owned()
+            function
         }
     );
-    let count = program_with(
-        source,
-        "count",
-        &Options {
-            limits: limits(10_000),
-            ..Options::default()
-        },
-    );
+    let count = limited("count", 10_000);
     let mut machine = count.machine();
-    assert_eq!(
-        machine.call(&[Word::from_u32(100)], &mut NoHost).unwrap(),
-        [Word::from_u32(4950)]
-    );
-    assert!(
-        machine
-            .call(&[Word::from_u32(100_000)], &mut NoHost)
-            .is_err()
-    );
     // A machine works after an error as before.
-    assert_eq!(
-        machine.call(&[Word::from_u32(100)], &mut NoHost).unwrap(),
-        [Word::from_u32(4950)]
-    );
+    for (n, sum) in [(100, Some(4950)), (100_000, None), (100, Some(4950))] {
+        let result = machine.call(&[Word::from_u32(n)], &mut NoHost);
+        assert_eq!(result.ok().map(|words| words[0].to_u32()), sum);
+    }
 }
 
 #[test]
 fn large_arrays_are_refused() {
-    let error = refused(
-        "fn f(i: u32) -> f32 { var a: array<f32, 100000000>; a[i] = 1.0; return a[i / 2u]; }",
-        "f",
-    );
-    assert!(matches!(error, LowerError::Slots { .. }), "{error}");
-    let error = refused(
-        "fn f(i: u32) -> f32 { var a: array<array<array<vec4f, 300>, 300>, 400>; return a[i][i][i].x; }",
-        "f",
-    );
-    assert!(matches!(error, LowerError::Slots { .. }), "{error}");
+    for body in [
+        "var a: array<f32, 100000000>; a[i] = 1.0; return a[i / 2u];",
+        "var a: array<array<array<vec4f, 300>, 300>, 400>; return a[i][i][i].x;",
+    ] {
+        let error = refused(&format!("fn f(i: u32) -> f32 {{ {body} }}"), "f");
+        assert!(matches!(error, LowerError::Slots { .. }), "{error}");
+    }
 }
 
 #[test]
 fn trees_of_calls_are_refused() {
-    let mut source = "fn tree0(x: f32) -> f32 { return x * x + 1.0; }\n".to_owned();
-    let mut constant = "fn g0() -> u32 { return 1u; }\n".to_owned();
-    for level in 1..60 {
-        source.push_str(&format!(
-            "fn tree{level}(x: f32) -> f32 {{ return tree{0}(x) + tree{0}(x + 1.0); }}\n",
-            level - 1
-        ));
-        constant.push_str(&format!(
-            "fn g{level}() -> u32 {{ return g{0}() + g{0}(); }}\n",
-            level - 1
-        ));
-    }
-    assert!(matches!(
-        refused(&source, "tree59"),
-        LowerError::Instructions { .. } | LowerError::Slots { .. }
-    ));
-    assert!(matches!(
-        refused(&constant, "g59"),
-        LowerError::Instructions { .. }
-    ));
-    let mut chain = "fn link0(x: f32) -> f32 { return x; }\n".to_owned();
-    for level in 1..3000 {
-        chain.push_str(&format!(
-            "fn link{level}(x: f32) -> f32 {{ return link{}(x); }}\n",
-            level - 1
-        ));
-    }
-    assert!(matches!(
-        refused(&chain, "link2999"),
-        LowerError::Depth { .. }
-    ));
+    // Each function calls the one before, called T, as its text says.
+    let calling = |first: &str, next: &str, count: usize| -> String {
+        let next = |level: usize| {
+            next.replace('N', &level.to_string())
+                .replace('T', &format!("t{}", level - 1))
+        };
+        first.to_owned() + &(1..count).map(next).collect::<String>()
+    };
+    let tree = calling(
+        "fn t0(x: f32) -> f32 { return x * x + 1.0; }",
+        "fn tN(x: f32) -> f32 { return T(x) + T(x + 1.0); }",
+        60,
+    );
+    let error = refused(&tree, "t59");
+    assert!(
+        matches!(
+            error,
+            LowerError::Instructions { .. } | LowerError::Slots { .. }
+        ),
+        "{error}"
+    );
+    let constant = calling(
+        "fn t0() -> u32 { return 1u; }",
+        "fn tN() -> u32 { return T() + T(); }",
+        60,
+    );
+    let error = refused(&constant, "t59");
+    assert!(matches!(error, LowerError::Instructions { .. }), "{error}");
+    let chain = calling(
+        "fn t0(x: f32) -> f32 { return x; }",
+        "fn tN(x: f32) -> f32 { return T(x); }",
+        3000,
+    );
+    let error = refused(&chain, "t2999");
+    assert!(matches!(error, LowerError::Depth { .. }), "{error}");
 }
 
 #[test]
@@ -217,12 +203,8 @@ fn overrides_take_their_values() {
         let program = program_with(source, function, &options);
         assert_eq!(call(&program, arguments), [expected], "{function} {set:?}");
     }
-    assert_eq!(
-        refused(source, "counted"),
-        LowerError::Override {
-            name: "COUNT".to_owned()
-        }
-    );
+    let name = "COUNT".to_owned();
+    assert_eq!(refused(source, "counted"), LowerError::Override { name });
 }
 
 struct Square;
@@ -258,28 +240,20 @@ fn the_host_computes_its_functions_and_supplies_variables() {
             return vec3f(a + b, f32(seed)) * frame.scale;
         }";
     let options = Options {
-        externals: vec!["other".to_owned(), "square".to_owned()],
-        globals: vec![
-            "frame".to_owned(),
-            "absent".to_owned(),
-            "table".to_owned(),
-            "seed".to_owned(),
-        ],
+        externals: ["other", "square"].map(String::from).into(),
+        globals: ["frame", "absent", "table", "seed"]
+            .map(String::from)
+            .into(),
         ..Options::default()
     };
     let program = program_with(source, "f", &options);
     assert_eq!(program.global_words(2), Some(6));
     assert_eq!(program.global_words(1), None);
     let mut machine = program.machine();
-    machine
-        .set_global(
-            0,
-            &[Word::from_u32(8), Word::from_u32(3), Word::from_f64(10.0)],
-        )
-        .unwrap();
-    machine
-        .set_global(2, &common::floats(&[1.0, 2.0, 3.0, 4.0, 5.0, 6.0]))
-        .unwrap();
+    let frame = [Word::from_u32(8), Word::from_u32(3), Word::from_f64(10.0)];
+    machine.set_global(0, &frame).unwrap();
+    let table = common::floats(&[1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
+    machine.set_global(2, &table).unwrap();
     machine.set_global(3, &[Word::from_u32(100)]).unwrap();
     assert!(machine.set_global(0, &[Word::ZERO]).is_err());
     for _ in 0..3 {

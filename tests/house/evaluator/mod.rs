@@ -10,5 +10,4 @@ mod limits;
 mod noise;
 mod pointers;
 mod precision;
-mod random_expressions;
 mod random_statements;

@@ -1,9 +1,9 @@
-//! Random programs on integers, against direct execution.
+//! Random programs on integers, with random expressions, against direct execution.
 
 use rasterlab::evaluator::{NoHost, Word};
 use rasterlab_fuzz::stress::scenes::for_seeds;
 
-use super::common::{Random, program};
+use super::common::{OPERATORS, Random, program};
 
 type V = [i32; 4];
 
@@ -240,12 +240,19 @@ impl Generator<'_> {
     }
 
     fn number(&mut self, names: &Names, depth: u32) -> Read<i32> {
-        let kind = self.random.u32(if depth > 2 { 3 } else { 6 });
+        let kind = self.random.u32(if depth > 2 { 3 } else { 9 });
         let (at, letter) = self.component();
         if kind == 0 {
             let value = self.random.bits() as i32 >> self.random.u32(31);
-            let text = format!("bitcast<i32>({}u)", value.cast_unsigned());
+            // With a variable: constant expressions that overflow would not compile.
+            let text = format!("(bitcast<i32>({}u) + zero)", value.cast_unsigned());
             return read(text, move |_| value);
+        }
+        if kind > 5 {
+            let (operator, of) = OPERATORS[self.random.u32(OPERATORS.len() as u32) as usize];
+            let [a, b] = [0, 1].map(|_| self.number(names, depth + 1));
+            let text = operator.replace('A', &a.text).replace('B', &b.text);
+            return read(text, move |state| of((a.value)(state), (b.value)(state)));
         }
         if kind < 3 {
             let Read { text, value } = self.vector(names, depth + 1);

@@ -46,7 +46,9 @@ fn text(v: DVec3) -> String {
 fn obj(triangles: &[[DVec3; 3]]) -> Vec<u8> {
     let mut file = String::from("v 0 0 0\n");
     for corners in triangles {
-        corners.map(|v| file += &format!("v {}\n", text(v)));
+        corners
+            .iter()
+            .for_each(|v| file += &format!("v {}\n", text(*v)));
         file += "f -3 -2 -1\n";
     }
     file.into()
@@ -56,7 +58,9 @@ fn stl(triangles: &[[DVec3; 3]]) -> Vec<u8> {
     let mut file = String::from("solid s\n");
     for corners in triangles {
         file += "facet normal 0 0 0\nouter loop\n";
-        corners.map(|v| file += &format!("vertex {}\n", text(v)));
+        corners
+            .iter()
+            .for_each(|v| file += &format!("vertex {}\n", text(*v)));
         file += "endloop\nendfacet\n";
     }
     file.into()
@@ -122,7 +126,8 @@ fn stored(place: [f32; 3]) -> Model {
     };
     let indices: Vec<u16> = (0..64).flat_map(cell).collect();
     let positions = model.floats("VEC3", &positions);
-    let indices = model.shorts("SCALAR", &indices);
+    let bytes: Vec<u8> = indices.iter().flat_map(|v| v.to_le_bytes()).collect();
+    let indices = model.accessor(&bytes, U16, "SCALAR", indices.len());
     model.primitive(json!({ "attributes": { "POSITION": positions }, "indices": indices }));
     model
 }

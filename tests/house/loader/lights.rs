@@ -1,7 +1,7 @@
 //! Promise: the lights of a glTF file arrive as the extension defines them, at most sixteen of them,
 //! where their nodes are, which clips may move; a light that breaks it is left out by name.
 
-use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
+use std::f64::consts::FRAC_PI_4;
 
 use glam::DVec3;
 use rasterlab::{
@@ -15,25 +15,23 @@ use serde_json::{Value, json};
 
 use super::model::*;
 
-/// The square, and a node for each light.
-fn lit(lights: &[Value]) -> Model {
+/// The square, and a node for each light of a list.
+fn lit(lights: &str) -> Model {
+    let lights: Value = serde_json::from_str(&format!("[{lights}]")).expect("lights");
+    let count = lights.as_array().map_or(0, Vec::len);
     let mut model = Model::square()
         .with("/extensionsUsed", json!(["KHR_lights_punctual"]))
         .with(
             "/extensions",
             json!({ "KHR_lights_punctual": { "lights": lights } }),
         );
-    for light in 0..lights.len() {
-        let node = model.push(
+    for light in 0..count {
+        model.push(
             "nodes",
             json!({ "extensions": { "KHR_lights_punctual": { "light": light } } }),
         );
-        model.json["scenes"][0]["nodes"]
-            .as_array_mut()
-            .expect("a list")
-            .push(json!(node));
     }
-    model
+    model.with("/scenes/0/nodes", (0..=count).collect::<Vec<_>>())
 }
 
 fn placed(scene: &Scene, preset: &Preset) -> Vec<PlacedLight> {
@@ -42,29 +40,21 @@ fn placed(scene: &Scene, preset: &Preset) -> Vec<PlacedLight> {
 
 #[test]
 fn each_kind_arrives_with_its_color_intensity_range_and_cone() {
-    let scene = lit(&[
-        json!({ "type": "directional" }),
-        json!({ "type": "point", "name": "Lamp", "color": [1, 0.5, 0], "intensity": 40, "range": 7 }),
-        json!({ "type": "spot", "intensity": 2, "spot": {} }),
-        json!({ "type": "spot", "spot": { "innerConeAngle": 0.25, "outerConeAngle": 0.5 } }),
-    ])
-    .scene();
-    assert_eq!(scene.notes, [""; 0]);
-    let read: Vec<_> = scene
-        .lights
-        .iter()
+    let scene = lit(r#"{"type":"directional"}, {"type":"point","name":"Lamp","color":[1,0.5,0],"intensity":40,"range":7},
+        {"type":"spot","intensity":2,"spot":{}}, {"type":"spot","spot":{"innerConeAngle":0.25,"outerConeAngle":0.5}}"#)
+    .silent();
+    let lights = scene.lights.iter();
+    let read: Vec<_> = lights
         .map(|light| (light.kind, light.light, light.range_m, light.node))
         .collect();
     let cone = |inner, outer| LightKind::Spot { inner, outer };
-    assert_eq!(
-        read,
-        [
-            (LightKind::Directional, [1.0; 3], None, None),
-            (LightKind::Point, [40.0, 20.0, 0.0], Some(7.0), None),
-            (cone(0.0, FRAC_PI_4), [2.0; 3], None, None),
-            (cone(0.25, 0.5), [1.0; 3], None, None),
-        ]
-    );
+    let wanted = [
+        (LightKind::Directional, [1.0; 3], None, None),
+        (LightKind::Point, [40.0, 20.0, 0.0], Some(7.0), None),
+        (cone(0.0, FRAC_PI_4), [2.0; 3], None, None),
+        (cone(0.25, 0.5), [1.0; 3], None, None),
+    ];
+    assert_eq!(read, wanted);
     assert_eq!(scene.lights[1].name, "Lamp");
 }
 
@@ -72,10 +62,9 @@ fn each_kind_arrives_with_its_color_intensity_range_and_cone() {
 fn a_light_shines_from_its_node_along_its_negative_z_whatever_its_scale() {
     // A quarter turn about x takes -z down.
     let turn = [-(FRAC_PI_4.sin()), 0.0, 0.0, FRAC_PI_4.cos()];
-    let scene = lit(&[json!({ "type": "spot", "range": 4 })])
-        .with("/nodes/1/translation", json!([1, 2, 3]))
-        .with("/nodes/1/rotation", json!(turn))
-        .with("/nodes/1/scale", json!([5, 5, 5]))
+    let model = lit(r#"{"type":"spot","range":4}"#).with("/nodes/1/rotation", json!(turn));
+    let scene = model
+        .set("/nodes/1/translation [1,2,3]\n/nodes/1/scale [5,5,5]")
         .scene();
     let light = placed(&scene, &Preset::default())[0];
     let toward = DVec3::from(light.toward.map(f64::from));
@@ -89,19 +78,20 @@ fn a_light_shines_from_its_node_along_its_negative_z_whatever_its_scale() {
 
 #[test]
 fn a_clip_moves_a_light_and_a_spin_turns_it() {
-    let mut model = lit(&[json!({ "type": "point" })]);
-    let times = model.floats("SCALAR", &[0.0, 2.0]);
-    let places = model.floats("VEC3", &[0.0, 0.0, 0.0, 8.0, 0.0, 0.0]);
-    let target = json!({ "node": 1, "path": "translation" });
-    let scene = model
-        .with("/animations", json!([{ "name": "Go", "channels": [{ "sampler": 0, "target": target }], "samplers": [{ "input": times, "output": places }] }]))
+    let scene = lit(r#"{"type":"point"}"#)
+        .set("& SCALAR F32 0 2\n& VEC3 F32 0 0 0 8 0 0")
+        .animated(
+            json!({ "node": 1, "path": "translation" }),
+            json!({ "input": 2, "output": 3 }),
+        )
         .scene();
+    let playback = ClipPlayback {
+        clip: "Move".into(),
+        clip_time_s: Some(0.5),
+        ..ClipPlayback::default()
+    };
     let mut preset = Preset {
-        playback: ClipPlayback {
-            clip: "Go".into(),
-            clip_time_s: Some(0.5),
-            ..ClipPlayback::default()
-        },
+        playback,
         ..Preset::default()
     };
     assert_eq!(placed(&scene, &preset)[0].position, [2.0, 0.0, 0.0]);
@@ -112,92 +102,79 @@ fn a_clip_moves_a_light_and_a_spin_turns_it() {
 }
 
 #[test]
-fn more_lights_than_shine_are_counted_and_unknown_types_named() {
-    let scene = lit(&vec![json!({ "type": "point" }); MAX_LIGHTS + 3]).scene();
-    assert_eq!(scene.lights.len(), MAX_LIGHTS);
-    assert_eq!(
-        scene.notes,
-        ["it has 19 lights; the first 16 shine, and 3 are left out"]
-    );
-    let scene = lit(&[
-        json!({ "type": "sky", "name": "Dome" }),
-        json!({ "type": "point" }),
-    ])
-    .scene();
-    assert_eq!((scene.lights.len(), scene.faults.len()), (1, 0));
-    assert_eq!(
-        scene.notes,
-        ["light \"Dome\" is left out: its type is unknown"]
-    );
-}
-
-#[test]
-fn lights_for_the_exposure_of_a_camera_are_told_with_a_strength_that_dims_them() {
+fn what_is_left_out_or_too_strong_is_one_note() {
+    let nineteen = [r#"{"type":"point"}"#; MAX_LIGHTS + 3].join(",");
     // A lamp of 1000 W as Blender writes it, eight meters above the square.
-    let lamp = lit(&[json!({ "type": "point", "intensity": 54351 })])
-        .with("/nodes/1/translation", json!([0.5, 0.5, 8]))
-        .scene();
-    assert_eq!(
-        lamp.notes,
-        [
-            "its lights are some 3e2 times as strong as what a picture holds; studio.lights = 4e-3 dims them"
-        ]
-    );
+    let lamp = r#"{"type":"point","intensity":54351}"#;
+    for (lights, node, count, note) in [
+        (
+            &*nineteen,
+            "",
+            MAX_LIGHTS,
+            "it has 19 lights; the first 16 shine, and 3 are left out",
+        ),
+        (
+            r#"{"type":"sky","name":"Dome"}, {"type":"point"}"#,
+            "",
+            1,
+            "light \"Dome\" is left out: its type is unknown",
+        ),
+        (
+            lamp,
+            "/nodes/1/translation [0.5,0.5,8]",
+            1,
+            "its lights are some 3e2 times as strong as what a picture holds; studio.lights = 4e-3 dims them",
+        ),
+        (
+            r#"{"type":"directional"}"#,
+            "/nodes/1/scale [1,1,0]",
+            0,
+            "light 0 is left out: its node has no direction",
+        ),
+    ] {
+        let scene = lit(lights).set(node).scene();
+        assert_eq!(scene.notes, [note]);
+        assert_eq!(scene.faults, [""; 0]);
+        assert_eq!(scene.lights.len(), count, "{note}");
+    }
 }
 
 #[test]
 fn a_light_that_breaks_the_extension_is_left_out_with_the_reason() {
-    let wide = json!({ "outerConeAngle": FRAC_PI_2 + 0.1 });
-    let crossed = json!({ "innerConeAngle": 0.7, "outerConeAngle": 0.3 });
     for (light, sentence) in [
+        (r#"{"intensity":1}"#, "light 0 is left out: it has no type"),
         (
-            json!({ "intensity": 1 }),
-            "light 0 is left out: it has no type",
-        ),
-        (
-            json!({ "type": "point", "intensity": -1 }),
+            r#"{"type":"point","intensity":-1}"#,
             "its intensity is -1; it must be from 0 to 1e9",
         ),
         (
-            json!({ "type": "point", "intensity": 1e38 }),
+            r#"{"type":"point","intensity":1e38}"#,
             "it must be from 0 to 1e9",
         ),
         (
-            json!({ "type": "point", "color": [1, 2] }),
+            r#"{"type":"point","color":[1,2]}"#,
             "its color is [1,2]; it must be 3 numbers",
         ),
         (
-            json!({ "type": "point", "color": [0, -2, 0] }),
+            r#"{"type":"point","color":[0,-2,0]}"#,
             "its color is -2; it must be from 0 to 1e9",
         ),
         (
-            json!({ "type": "point", "range": -1 }),
+            r#"{"type":"point","range":-1}"#,
             "its range is -1; it must be above 0",
         ),
         (
-            json!({ "type": "spot", "spot": wide }),
+            r#"{"type":"spot","spot":{"outerConeAngle":1.68}}"#,
             "that at most pi / 2",
         ),
         (
-            json!({ "type": "spot", "spot": crossed }),
+            r#"{"type":"spot","spot":{"innerConeAngle":0.7,"outerConeAngle":0.3}}"#,
             "the inner one must be from 0 to the outer one",
         ),
-        (json!("point"), "light 0 is left out: it is \"point\""),
+        ("\"point\"", "light 0 is left out: it is \"point\""),
     ] {
-        let scene = lit(&[light]).dropped(sentence);
-        assert!(scene.lights.is_empty(), "{sentence}");
+        assert!(lit(light).dropped(sentence).lights.is_empty(), "{sentence}");
     }
-    lit(&[json!({ "type": "point" })])
-        .with(
-            "/nodes/1/extensions",
-            json!({ "KHR_lights_punctual": { "light": 1 } }),
-        )
-        .dropped("its light is 1, but there are only 1 lights");
-    let flat = lit(&[json!({ "type": "directional" })])
-        .with("/nodes/1/scale", json!([1, 1, 0]))
-        .scene();
-    assert_eq!(
-        flat.notes,
-        ["light 0 is left out: its node has no direction"]
-    );
+    lit(r#"{"type":"point"}"#)
+        .play("/nodes/1/extensions {\"KHR_lights_punctual\":{\"light\":1}}\n~ its light is 1, but there are only 1 lights");
 }

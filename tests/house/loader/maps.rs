@@ -6,27 +6,20 @@ use rasterlab::scene::{
     Scene,
     material::{Material, TextureSlot},
 };
-use serde_json::json;
 
 use super::model::*;
 
 /// The square with all five textures of one image.
 fn mapped() -> Model {
-    Model::textured()
-        .with(
-            "/materials/0/pbrMetallicRoughness/metallicRoughnessTexture",
-            json!({ "index": 0 }),
-        )
-        .with(
-            "/materials/0/occlusionTexture",
-            json!({ "index": 0, "strength": 0.25 }),
-        )
-        .with(
-            "/materials/0/normalTexture",
-            json!({ "index": 0, "scale": -2 }),
-        )
-        .with("/materials/0/emissiveTexture", json!({ "index": 0 }))
-        .with("/materials/0/emissiveFactor", json!([1, 1, 1]))
+    Model::textured().set(
+        r#"
+        M/pbrMetallicRoughness/metallicRoughnessTexture {"index":0}
+        M/occlusionTexture {"index":0,"strength":0.25}
+        M/normalTexture {"index":0,"scale":-2}
+        M/emissiveTexture {"index":0}
+        M/emissiveFactor [1,1,1]
+        "#,
+    )
 }
 
 /// Tangents of the corners in object space, and their sides.
@@ -34,20 +27,18 @@ fn tangents(scene: &Scene) -> Vec<(DVec3, f64)> {
     let primitive = &scene.primitives[0];
     let stored = primitive.tangents.expect("a texture of normals");
     assert_eq!(stored.count, 3 * primitive.triangle_count());
-    (0..stored.count)
-        .map(|corner| {
-            let place = |v| DVec3::from(primitive.position(scene, v).map(f64::from));
-            let [a, b, c] = primitive.corners(scene, corner / 3).map(place);
-            let [x, y, side] = stored.vector(&scene.vertex_bytes, corner);
-            ((b - a) * x + (c - a) * y, side)
-        })
-        .collect()
+    let tangent = |corner| {
+        let place = |v| DVec3::from(primitive.position(scene, v).map(f64::from));
+        let [a, b, c] = primitive.corners(scene, corner / 3).map(place);
+        let [x, y, side] = stored.vector(&scene.vertex_bytes, corner);
+        ((b - a) * x + (c - a) * y, side)
+    };
+    (0..stored.count).map(tangent).collect()
 }
 
 #[test]
 fn data_is_an_image_of_its_own_that_is_averaged_as_numbers() {
-    let scene = mapped().scene();
-    assert!(scene.notes.is_empty(), "{:?}", scene.notes);
+    let scene = mapped().silent();
     let material = &scene.materials[scene.primitives[0].material];
     let images = TextureSlot::ALL.map(|slot| material.texture(slot).map(|texture| texture.image));
     assert_eq!(images, [Some(0), Some(0), Some(1), Some(1), Some(1)]);
@@ -70,13 +61,14 @@ fn data_is_an_image_of_its_own_that_is_averaged_as_numbers() {
 
 #[test]
 fn maps_have_sets_and_transforms_of_their_own_and_unlit_materials_none() {
-    let mut model = mapped();
-    let other = model.floats("VEC2", &[0.0, 1.0, 0.0, 0.0, 1.0, 0.0, 1.0, 1.0]);
-    let transform = json!({ "KHR_texture_transform": { "offset": [0.5, 0], "scale": [2, 2] } });
-    let model = model
-        .with("/meshes/0/primitives/0/attributes/TEXCOORD_1", json!(other))
-        .with("/materials/0/normalTexture/texCoord", json!(1))
-        .with("/materials/0/occlusionTexture/extensions", transform);
+    let model = mapped().set(
+        r#"
+        & VEC2 F32 0 1 0 0 1 0 1 1
+        A/TEXCOORD_1 3
+        M/normalTexture/texCoord 1
+        M/occlusionTexture/extensions {"KHR_texture_transform":{"offset":[0.5,0],"scale":[2,2]}}
+        "#,
+    );
     let scene = model.scene();
     let [base, _, _, occlusion, normal] = scene.primitives[0].texcoords;
     assert_eq!(base, occlusion);
@@ -93,14 +85,11 @@ fn maps_have_sets_and_transforms_of_their_own_and_unlit_materials_none() {
         assert!((DVec3::Z.cross(tangent) * side - DVec3::X).length() < 1e-6 || side < 0.0);
     }
     let unlit = mapped()
-        .with(
-            "/materials/0/extensions",
-            json!({ "KHR_materials_unlit": {} }),
-        )
+        .set("M/extensions {\"KHR_materials_unlit\":{}}")
         .material();
     assert!(!unlit.has_finish_maps() && !unlit.has_normal_map());
     let lost = mapped()
-        .with("/materials/0/normalTexture/texCoord", json!(7))
+        .set("M/normalTexture/texCoord 7")
         .dropped("mesh \"X\" primitive 0 TEXCOORD_7: it is missing, although a texture of the material uses it; the texture is left out");
     assert!(lost.primitives[0].tangents.is_none());
 }
@@ -108,23 +97,18 @@ fn maps_have_sets_and_transforms_of_their_own_and_unlit_materials_none() {
 #[test]
 fn tangents_of_the_file_are_kept_where_it_has_normals() {
     let mut model = mapped();
-    let leaning = [0.6, 0.8, 0.0, -1.0].repeat(4);
-    let normals = model.floats("VEC3", &[0.0, 0.0, 1.0].repeat(4));
-    let given = model.floats("VEC4", &leaning);
-    let model = model.with("/meshes/0/primitives/0/attributes/TANGENT", json!(given));
+    model.floats("VEC4", &[0.6, 0.8, 0.0, -1.0].repeat(4));
+    model.floats("VEC3", &[0.0, 0.0, 1.0].repeat(4));
     let is_as_given = |scene: &Scene| {
-        let like = |(tangent, side): &(DVec3, f64)| {
-            (*tangent - DVec3::new(0.6, 0.8, 0.0)).length() < 1e-6 && *side == -1.0
-        };
-        tangents(scene).iter().all(like)
+        let wanted = DVec3::new(0.6, 0.8, 0.0);
+        let mut tangents = tangents(scene).into_iter();
+        tangents.all(|(tangent, side)| (tangent - wanted).length() < 1e-6 && side == -1.0)
     };
     // Without normals of the file its tangents do not count.
+    let model = model.set("A/TANGENT 3");
     assert!(!is_as_given(&model.scene()));
-    let model = model.with("/meshes/0/primitives/0/attributes/NORMAL", json!(normals));
-    assert!(is_as_given(&model.scene()));
-    let mut wrong = mapped();
-    let short = wrong.floats("VEC3", &[1.0, 0.0, 0.0].repeat(4));
-    let wrong = wrong.with("/meshes/0/primitives/0/attributes/TANGENT", json!(short));
+    assert!(is_as_given(&model.set("A/NORMAL 4").scene()));
+    let wrong = mapped().set("& VEC3 F32 1 0 0 1 0 0 1 0 0 1 0 0\nA/TANGENT 3");
     let scene = wrong.dropped("mesh \"X\" primitive 0 TANGENT: accessor 3 has the type 3 x F32, which glTF does not allow for it");
     assert!(scene.primitives[0].tangents.is_some(), "our own");
 }
@@ -132,14 +116,12 @@ fn tangents_of_the_file_are_kept_where_it_has_normals() {
 #[test]
 fn a_material_without_maps_needs_none() {
     let material = Model::textured().material();
-    assert_eq!(
-        material,
-        Material {
-            name: "paper".into(),
-            base_texture: material.base_texture,
-            metallic: 1.0,
-            roughness: 1.0,
-            ..Material::default()
-        }
-    );
+    let wanted = Material {
+        name: "paper".into(),
+        base_texture: material.base_texture,
+        metallic: 1.0,
+        roughness: 1.0,
+        ..Material::default()
+    };
+    assert_eq!(material, wanted);
 }

@@ -30,34 +30,66 @@ pub fn load(load: LoadModel, bytes: &[u8], beside: Files) -> Result<Scene, LoadE
     })
 }
 
-/// It loads without a message.
+/// It loads and says just this.
 #[track_caller]
-fn opened(format: LoadModel, bytes: &[u8], beside: Files) -> Scene {
-    let scene = load(format, bytes, beside)
-        .unwrap_or_else(|error| panic!("{error}: {}", String::from_utf8_lossy(bytes)));
+fn told(format: LoadModel, bytes: impl AsRef<[u8]>, beside: Files, sentences: &[&str]) -> Scene {
+    let text = String::from_utf8_lossy(bytes.as_ref());
+    let scene =
+        load(format, bytes.as_ref(), beside).unwrap_or_else(|error| panic!("{error}: {text}"));
     assert_sound(&scene);
-    assert_eq!(scene.notes, [""; 0]);
+    assert_eq!(scene.notes, sentences, "{text}");
+    assert!(scene.triangle_count() > 0, "{text}");
     scene
 }
 
-/// It loads, draws something and says just this.
+/// It loads without a message.
 #[track_caller]
-fn told(format: LoadModel, bytes: &[u8], beside: Files, sentences: &[&str]) -> Scene {
-    let scene = load(format, bytes, beside).expect(sentences[0]);
-    assert_sound(&scene);
-    assert_eq!(scene.notes, sentences);
-    assert!(scene.triangle_count() > 0);
-    scene
+fn opened(format: LoadModel, bytes: impl AsRef<[u8]>, beside: Files) -> Scene {
+    told(format, bytes, beside, &[])
+}
+
+/// A transcript: a line with the name of a format and a file, in which `\n` ends a line; below it
+/// what is said where the file opens, each with a `~`, or after a `!` why it is refused. `obj+` is
+/// an OBJ that begins with the four corners.
+#[track_caller]
+fn play(transcript: &str, beside: Files) {
+    let lines: Vec<&str> = transcript
+        .lines()
+        .map(str::trim)
+        .filter(|line| !line.is_empty())
+        .collect();
+    let starts = lines
+        .iter()
+        .enumerate()
+        .filter(|(_, line)| !line.starts_with(['~', '!']));
+    for (start, line) in starts {
+        let (kind, text) = line.split_once(' ').unwrap_or((line, ""));
+        let text = text.replace("\\n", "\n");
+        let text = if kind == "obj+" {
+            format!("{CORNERS}{text}")
+        } else {
+            text
+        };
+        let format = match kind {
+            "stl" => load_stl as LoadModel,
+            "ply" => load_ply,
+            _ => load_obj,
+        };
+        if let Some(sentence) = lines[start + 1].strip_prefix("! ") {
+            refused(format, text.as_bytes(), sentence);
+            continue;
+        }
+        let sentences = lines[start + 1..]
+            .iter()
+            .map_while(|line| line.strip_prefix("~ "));
+        told(format, &text, beside, &sentences.collect::<Vec<_>>());
+    }
 }
 
 #[track_caller]
 fn refused(format: LoadModel, bytes: &[u8], sentence: &str) {
     let error = load(format, bytes, &[]).expect_err(sentence).to_string();
     assert_eq!(error, sentence);
-}
-
-fn obj(faces: &str) -> Vec<u8> {
-    format!("{CORNERS}{faces}").into_bytes()
 }
 
 #[test]
@@ -76,7 +108,7 @@ fn every_form_of_an_obj_face_and_line_is_read() {
         CORNERS.replace(" 1", " 1,0") + "vp 1\nlod 3\nf 1 2 3 4\n",
         "v 0 0 0 1\nv 1 0 0 0.5\nv 1 1 0 1\nv 0 1 0 1\nf 1 2 3 4".into(),
     ] {
-        let scene = opened(load_obj, text.as_bytes(), &[]);
+        let scene = opened(load_obj, &text, &[]);
         assert_eq!(triangles(&scene), square(), "{text}");
         let has_normals = text.contains("//1") || text.contains("/3/1");
         assert_eq!(scene.primitives[0].is_faceted, !has_normals, "{text}");
@@ -85,47 +117,40 @@ fn every_form_of_an_obj_face_and_line_is_read() {
 
 #[test]
 fn objects_groups_and_materials_are_parts_with_names() {
-    let faces = "o body\nf 1 2 3\ng left arm\nusemtl red\nf 1 2 4\no head\ng empty\nf 1 3 4\no body\nf 2 3 4\n";
+    let faces = "mtllib m.mtl\no body\nf 1 2 3\ng left arm\nusemtl red\nf 1 2 4\no head\ng empty\nf 1 3 4\no body\nf 2 3 4\n";
     let mtl: Files = &[("m.mtl", b"newmtl red\nKd 1 0 0\nnewmtl unused\nKd 0 0 0\n")];
-    let scene = opened(load_obj, &obj(&format!("mtllib m.mtl\n{faces}")), mtl);
-    let mut names: Vec<String> = parts(&scene)
-        .into_iter()
+    let scene = opened(load_obj, format!("{CORNERS}{faces}"), mtl);
+    let parts = parts(&scene).into_iter();
+    let mut names: Vec<String> = parts
         .map(|part| format!("{:?} {}", part.kind, part.name))
         .collect();
     names.sort();
-    let mut wanted = [
-        "Material default",
-        "Material red",
-        "Mesh body",
-        "Mesh empty",
-        "Mesh left arm",
-        "Node body",
-        "Node empty",
-        "Node head",
-        "Node left arm",
-    ]
-    .map(str::to_owned);
-    wanted.sort();
-    assert_eq!(names, wanted);
+    let wanted = "Material default, Material red, Mesh body, Mesh empty, Mesh left arm, Node body, Node empty, Node head, Node left arm";
+    assert_eq!(names.join(", "), wanted);
     assert_eq!(scene.named_nodes[1].parent, Some(0));
 }
 
 #[test]
 fn smoothing_groups_share_normals_across_materials_and_not_across_groups() {
     // Two squares that meet at a right angle.
-    let fold = "v 0 0 1\nv 0 1 1\n";
-    let normals = |faces: &str| -> Vec<DVec3> {
-        let scene = opened(load_obj, &obj(&format!("{fold}{faces}")), &[]);
-        let mut normals = Vec::new();
-        for primitive in &scene.primitives {
-            for vertex in 0..primitive.vertex_count() {
-                if primitive.position(&scene, vertex) == [0.0; 3] && !primitive.is_faceted {
-                    normals.push(primitive.normals.vector(&scene.vertex_bytes, vertex).into());
-                }
+    let normals =
+        |faces: &str| -> Vec<DVec3> {
+            let scene = opened(load_obj, format!("{CORNERS}v 0 0 1\nv 0 1 1\n{faces}"), &[]);
+            let mut normals = Vec::new();
+            for primitive in scene
+                .primitives
+                .iter()
+                .filter(|primitive| !primitive.is_faceted)
+            {
+                let vertices = 0..primitive.vertex_count();
+                let at_origin =
+                    vertices.filter(|&vertex| primitive.position(&scene, vertex) == [0.0; 3]);
+                normals.extend(at_origin.map(|vertex| {
+                    DVec3::from(primitive.normals.vector(&scene.vertex_bytes, vertex))
+                }));
             }
-        }
-        normals
-    };
+            normals
+        };
     let half = 0.5f64.sqrt();
     let shared = normals("s 1\nf 1 2 3 4\nf 1 4 6 5\n");
     assert!(shared.len() == 1 && shared[0].distance(DVec3::new(half, 0.0, half)) < 1e-6);
@@ -139,50 +164,44 @@ fn smoothing_groups_share_normals_across_materials_and_not_across_groups() {
 #[test]
 fn materials_have_colors_and_images_however_their_names_are_written() {
     let png = encoded(image::ImageFormat::Png);
-    let textured = "vt 0 0\nvt 1 0\nvt 1 1\nusemtl my stuff\nf 1/1 2/2 3/3\n";
-    let with = |library: &str| obj(&format!("{library}\n{textured}"));
+    let with = |library: &str| {
+        format!(
+            "{CORNERS}mtllib {library}\nvt 0 0\nvt 1 0\nvt 1 1\nusemtl my stuff\nf 1/1 2/2 3/3\n"
+        )
+    };
     for (library, file, map, image) in [
-        ("mtllib a.mtl", "a.mtl", "map_Kd flag.png", "flag.png"),
+        ("a.mtl", "a.mtl", "map_Kd flag.png", "flag.png"),
         (
-            "mtllib my lib.mtl",
+            "my lib.mtl",
             "my lib.mtl",
             "map_kd the flag.png",
             "the flag.png",
         ),
         (
-            "mtllib b.mtl a.mtl",
+            "b.mtl a.mtl",
             "a.mtl",
             "map_Kd -s 1 2 1 -clamp on -o .5 flag.png",
             "flag.png",
         ),
         (
-            "mtllib ./sub\\a.mtl",
+            "./sub\\a.mtl",
             "sub/a.mtl",
             "map_Kd tex\\flag.png",
             "sub/tex/flag.png",
         ),
         (
-            "mtllib C:\\x\\a.mtl",
+            "C:\\x\\a.mtl",
             "a.mtl",
             "map_Kd \"/home/me/flag.png\"",
             "flag.png",
         ),
-        (
-            "mtllib ../a.mtl",
-            "a.mtl",
-            "map_Kd ../../../flag.png",
-            "flag.png",
-        ),
+        ("../a.mtl", "a.mtl", "map_Kd ../../../flag.png", "flag.png"),
     ] {
         let mtl = format!("newmtl  my stuff\r\nKd 0.5 1 0\r\nKe 0 0 2\r\n{map}\r\nillum 2\r\n");
         let beside: Files = &[(file, mtl.as_bytes()), ("b.mtl", b""), (image, &png)];
-        let scene = load(load_obj, &with(library), beside).expect(library);
-        assert_eq!(
-            scene.faults.len(),
-            usize::from(library.starts_with("mtllib b.mtl")),
-            "{:?}",
-            scene.notes
-        );
+        let scene = load(load_obj, with(library).as_bytes(), beside).expect(library);
+        let faults = usize::from(library.starts_with("b.mtl"));
+        assert_eq!(scene.faults.len(), faults, "{:?}", scene.notes);
         let material = &scene.materials[scene.primitives[0].material];
         assert_eq!(material.name, "my stuff");
         assert!((material.base_color[0] - 0.214_041).abs() < 1e-5, "sRGB");
@@ -196,19 +215,11 @@ fn materials_have_colors_and_images_however_their_names_are_written() {
     }
     let glowing = "newmtl my stuff\nKe 0 0 0\nmap_Ke flag.png\nmap_Kd flag.png\nmap_d flag.png\n";
     let beside: Files = &[("a.mtl", glowing.as_bytes()), ("flag.png", &png)];
-    let scene = told(
-        load_obj,
-        &with("mtllib a.mtl"),
-        beside,
-        &[
-            "material \"my stuff\": blending is not supported; it is masked where the alpha of its map_Kd is below one half",
-        ],
-    );
+    let note = "material \"my stuff\": blending is not supported; it is masked where the alpha of its map_Kd is below one half";
+    let scene = told(load_obj, with("a.mtl"), beside, &[note]);
     let material = &scene.materials[0];
-    assert_eq!(
-        (material.emission, material.alpha_cutoff, scene.images.len()),
-        ([1.0; 3], Some(0.5), 1)
-    );
+    let read = (material.emission, material.alpha_cutoff, scene.images.len());
+    assert_eq!(read, ([1.0; 3], Some(0.5), 1));
 }
 
 #[test]
@@ -217,35 +228,32 @@ fn colors_of_vertices_are_read_where_a_format_has_them() {
         let colors = scene.primitives[0].colors.expect("colors");
         [0, 1, 2].map(|c| (colors.value(&scene.vertex_bytes, vertex, c) * 1000.0).round())
     };
-    let text = "v 0 0 0 1 0 0.5\nv 1 0 0 1 0 1 0.5\nv 1 1 0\nf 1 2 3\n";
-    let scene = opened(load_obj, text.as_bytes(), &[]);
+    let red = [1000.0, 0.0, 0.0];
+    let scene = opened(
+        load_obj,
+        "v 0 0 0 1 0 0.5\nv 1 0 0 1 0 1 0.5\nv 1 1 0\nf 1 2 3\n",
+        &[],
+    );
+    let colors = [0, 1, 2].map(|vertex| color(&scene, vertex));
     assert_eq!(
-        [0, 1, 2].map(|vertex| color(&scene, vertex)),
+        colors,
         [[1000.0, 0.0, 214.0], [1000.0, 0.0, 1000.0], [1000.0; 3]]
     );
     for (kind, full) in [("uchar", "255"), ("float", "1"), ("ushort", "65535")] {
-        let channels: String = ["red", "green", "blue", "alpha"]
-            .map(|name| format!("property {kind} {name}\n"))
-            .concat();
-        let text = ply_text(
-            "",
-            &channels,
-            &format!("0 0 0 {full} 0 0 0\n1 0 0 0 0 0 0\n1 1 0 0 0 0 0\n"),
-            "3 0 1 2\n",
-        );
-        assert_eq!(
-            color(&opened(load_ply, text.as_bytes(), &[]), 0),
-            [1000.0, 0.0, 0.0]
-        );
+        let channels =
+            ["red", "green", "blue", "alpha"].map(|name| format!("property {kind} {name}\n"));
+        let vertices = format!("0 0 0 {full} 0 0 0\n1 0 0 0 0 0 0\n1 1 0 0 0 0 0\n");
+        let text = ply_text("", &channels.concat(), &vertices, "3 0 1 2\n");
+        assert_eq!(color(&opened(load_ply, &text, &[]), 0), red);
     }
     // VisCAM: red in the upper bits; Magics: in the lower ones, and a color for the rest.
-    let scene = opened(load_stl, &stl(b"", &[(SQUARE_HALF, 0xfc00)]), &[]);
-    assert_eq!(color(&scene, 0), [1000.0, 0.0, 0.0]);
+    let scene = opened(load_stl, stl(b"", &[(SQUARE_HALF, 0xfc00)]), &[]);
+    assert_eq!(color(&scene, 0), red);
     let facets = [(SQUARE_HALF, 0x001f), (SQUARE_HALF, 0x8000)];
-    let scene = opened(load_stl, &stl(b"COLOR=\0\xff\0\xff", &facets), &[]);
+    let scene = opened(load_stl, stl(b"COLOR=\0\xff\0\xff", &facets), &[]);
     assert_eq!(
         (color(&scene, 0), color(&scene, 3)),
-        ([1000.0, 0.0, 0.0], [0.0, 1000.0, 0.0])
+        (red, [0.0, 1000.0, 0.0])
     );
 }
 
@@ -282,24 +290,20 @@ fn stl_is_text_or_binary_whatever_it_begins_with() {
     let text = stl_text(&halves);
     let binary = stl(b"solid but binary", &halves.map(|half| (half, 0)));
     for bytes in [
-        text.clone().into_bytes(),
-        text.to_uppercase().replace('\n', "\r\n").into_bytes(),
+        text.as_bytes(),
+        text.to_uppercase().replace('\n', "\r\n").as_bytes(),
         text.replace('\n', " ")
             .replace("solid part", "solid\n")
-            .into_bytes(),
-        binary.clone(),
+            .as_bytes(),
+        &binary,
     ] {
-        let scene = opened(load_stl, &bytes, &[]);
+        let scene = opened(load_stl, bytes, &[]);
         assert_eq!(triangles(&scene), square());
         assert_eq!(scene.vertex_count(), 4, "equal corners are one vertex");
         assert!(scene.primitives[0].is_faceted);
     }
-    let two = format!(
-        "{}{}",
-        stl_text(&halves),
-        stl_text(&halves[..1]).replace("part", "the lid")
-    );
-    let scene = opened(load_stl, two.as_bytes(), &[]);
+    let two = text + &stl_text(&halves[..1]).replace("part", "the lid");
+    let scene = opened(load_stl, &two, &[]);
     let names: Vec<&str> = scene
         .named_nodes
         .iter()
@@ -309,12 +313,8 @@ fn stl_is_text_or_binary_whatever_it_begins_with() {
         (names, scene.triangle_count()),
         (vec!["part", "the lid"], 3)
     );
-    told(
-        load_stl,
-        &binary[..binary.len() - 1],
-        &[],
-        &["the file states 2 triangles and has 1; those that are whole are drawn"],
-    );
+    let note = "the file states 2 triangles and has 1; those that are whole are drawn";
+    told(load_stl, &binary[..binary.len() - 1], &[], &[note]);
 }
 
 /// A PLY as text, of vertices with x, y, z and more.
@@ -331,22 +331,22 @@ const PLACES: &str = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n";
 fn ply_is_read_by_what_its_header_says() {
     let plain = ply_text("comment hi\nobj_info x\n", "", PLACES, "4 0 1 2 3\n");
     let late = "ply\nformat ascii 1.0\nelement edge 1\nproperty int a\nelement face 2\nproperty uchar flags\nproperty list uint8 ushort vertex_index\nelement none 5\nelement vertex 4\nproperty list char float extra\nproperty float z\nproperty float x\nproperty float y\nend_header\n7\n0 3 0 1 2\n0 3 0 2 3\n0 0 0 0\n2 8 9 0 1 0\n1 5 0 1 1\n0 0 0 1\n";
-    let strip = plain
-        .replace("element face 1", "element tristrips 1")
-        .replace("4 0 1 2 3", "8 0 1 2 -1 2 3 0 0");
+    let strip = plain.replace("element face 1", "element tristrips 1");
+    let strip = strip.replace("4 0 1 2 3", "8 0 1 2 -1 2 3 0 0");
     for text in [plain.as_str(), &plain.replace('\n', "\r\n"), late, &strip] {
-        let mut found = triangles(&opened(load_ply, text.as_bytes(), &[]));
+        let mut found = triangles(&opened(load_ply, text, &[]));
         if text.contains("tristrips") {
             found[1].rotate_right(1);
         }
         assert_eq!(found, square(), "{text}");
     }
-    for (is_big, format) in [(false, "little"), (true, "big")] {
+    for format in ["little", "big"] {
         let order = |bytes: &[u8]| -> Vec<u8> {
-            match is_big {
-                true => bytes.iter().rev().copied().collect(),
-                false => bytes.to_vec(),
+            let mut bytes = bytes.to_vec();
+            if format == "big" {
+                bytes.reverse();
             }
+            bytes
         };
         let mut bytes = format!("ply\nformat binary_{format}_endian 1.0\nelement odd 2\nproperty list ushort short skipped\nelement vertex 4\nproperty double x\nproperty short y\nproperty float z\nelement face 1\nproperty list uint char vertex_indices\nend_header\n").into_bytes();
         for list in [&[][..], &[-3i16, 500]] {
@@ -377,10 +377,11 @@ fn ply_is_read_by_what_its_header_says() {
 fn ply_shows_its_image_by_coordinates_of_vertices_or_of_corners() {
     let png = encoded(image::ImageFormat::Png);
     let name = "comment TextureFile my flag.png\n";
+    let rows = "0 0 0 0 0\n1 0 0 1 0\n1 1 0 1 1\n";
     let of_vertices = ply_text(
         name,
         "property float s\nproperty float t\n",
-        "0 0 0 0 0\n1 0 0 1 0\n1 1 0 1 1\n",
+        rows,
         "3 0 1 2\n",
     );
     let of_corners = ply_text(name, "", PLACES, "3 0 1 2 6 0 0 1 0 1 1\n").replace(
@@ -388,225 +389,59 @@ fn ply_shows_its_image_by_coordinates_of_vertices_or_of_corners() {
         "vertex_indices\nproperty list uchar float texcoord\n",
     );
     for text in [of_vertices, of_corners] {
-        let scene = opened(load_ply, text.as_bytes(), &[("my flag.png", &png)]);
+        let scene = opened(load_ply, &text, &[("my flag.png", &png)]);
         let texcoords = scene.primitives[0].texcoords[0].expect("coordinates");
-        let found =
-            [0, 1, 2].map(|vertex| [0, 1].map(|c| texcoords.value(&scene.vertex_bytes, vertex, c)));
-        assert_eq!(found, [[0.0, 1.0], [1.0, 1.0], [1.0, 0.0]]);
-        let scene = told(
-            load_ply,
-            text.as_bytes(),
-            &[],
-            &["texture 0: \"my flag.png\": cannot read the file; it is left out"],
-        );
+        let corner = |vertex| [0, 1].map(|c| texcoords.value(&scene.vertex_bytes, vertex, c));
+        assert_eq!([0, 1, 2].map(corner), [[0.0, 1.0], [1.0, 1.0], [1.0, 0.0]]);
+        let note = "texture 0: \"my flag.png\": cannot read the file; it is left out";
+        let scene = told(load_ply, &text, &[], &[note]);
         assert_eq!(scene.primitives[0].texcoords, [None; 5]);
     }
 }
 
 #[test]
-fn a_broken_part_is_left_out_and_kinds_of_them_are_told_once_with_their_number() {
-    let nan = ply_text(
-        "",
-        "",
-        "0 0 0\n1 0 0\n1 1 0\nnan 1 0\n",
-        "3 0 1 2\n3 0 1 3\n3 0 1 9\n3 0 -1 2\n2 0 1\n3 0 1\n",
+fn a_broken_part_is_left_out_and_told_once_and_what_leaves_nothing_is_refused() {
+    let faces = "3 0 1 2\n3 0 1 3\n3 0 1 9\n3 0 -1 2\n2 0 1\n3 0 1\n";
+    let nan = ply_text("", "", "0 0 0\n1 0 0\n1 1 0\nnan 1 0\n", faces).replace('\n', "\\n");
+    let facets = "facet\nvertex 1 x 2\nendfacet\nfacet\nvertex 1 1 1\nendfacet\nendsolid";
+    let broken = stl_text(&[SQUARE_HALF])
+        .replace("endsolid", facets)
+        .replace('\n', "\\n");
+    let bad = b"Kd 1 1 1\nnewmtl a\nKd x y z\nd 0.5\nmap_Kd gone.png\nbump a.png\nmap_Ks b.png\nmap_d c.png\n";
+    let beside: Files = &[
+        ("bad.mtl", bad),
+        ("text.mtl", b"newmtl a\nmap_Kd bad.mtl\n"),
+        ("flag.mtl", b"newmtl a\nmap_Kd flag.png\n"),
+        ("flag.png", &encoded(image::ImageFormat::Png)),
+    ];
+    let points = ply_text("", "", PLACES, "").replace('\n', "\\n");
+    let transcript = include_str!("mesh_files.txt").replace("BROKEN", &broken);
+    play(
+        &transcript.replace("NAN", &nan).replace("POINTS", &points),
+        beside,
     );
     let mut far = stl(b"", &[(SQUARE_HALF, 0), (OTHER_HALF, 0)]);
     far[84 + 12..84 + 16].copy_from_slice(&f32::INFINITY.to_le_bytes());
-    for (format, bytes, sentences) in [
-        (
-            load_obj as LoadModel,
-            obj("f 1 2 3\nf 1 2 5\nf 0 1 2\nf 1 2\nf a b c\nf 1.5 2 3\nf -5 1 2\nf"),
-            &[
-                "line 6: the face has the vertex \"5\", but there are 4; it is left out, and 6 more like it",
-            ][..],
-        ),
-        (
-            load_obj,
-            obj("v nan 0 0\nv 1e39 0 0\nv 1 2\nvn x\nf 1 2 3\nf 1 2 7\n"),
-            &[
-                "line 5: \"nan 0 0\" are not the numbers of a v; faces with it are left out, and 2 more like it",
-                "line 8: \"x\" are not the numbers of a vn; it is read as 0",
-            ],
-        ),
-        (
-            load_obj,
-            obj(
-                "hello world\nf 1/7 2 3\nf 1//1 2 3\nusemtl a\nf 1 2 3\nusemtl b\nusemtl a\nl 1 2\np 1\n",
-            ),
-            &[
-                "line 5: \"hello\" is no keyword of OBJ; it is ignored",
-                "line 6: the face has the texture coordinates \"7\", but there are 0; it is drawn without, and 1 more like it",
-                "line 8: no material file has \"a\"; it is white, and 1 more like it",
-                "line 12: \"l\" is no face; it is not drawn, and 1 more like it",
-            ],
-        ),
-        (
-            load_obj,
-            obj("mtllib gone.mtl\nusemtl a\nf 1 2 3"),
-            &["material file: \"gone.mtl\": cannot read the file; its materials are missing"],
-        ),
-        (
-            load_obj,
-            obj("mtllib bad.mtl\nusemtl a\nf 1 2 3"),
-            &[
-                "material \"a\": map_Kd: \"gone.png\": cannot read the file; it is left out",
-                "material file \"bad.mtl\" line 3: \"x y z\" is no color of three numbers; the default is used",
-                "material \"a\": blending is not supported; the material is opaque",
-                "these are not drawn: bump, map_ks",
-            ],
-        ),
-        (
-            load_obj,
-            obj("mtllib text.mtl\nusemtl a\nf 1 2 3"),
-            &[
-                "material \"a\": map_Kd: \"bad.mtl\": it is neither PNG, JPEG nor WebP; convert it to one of them; it is left out",
-            ],
-        ),
-        (
-            load_obj,
-            obj("mtllib flag.mtl\nusemtl a\nvt 9e9 0\nf 1 2 3\nf 1/1 2/1 3/1"),
-            &[
-                "line 8: the face has no texture coordinates; it is drawn without its texture",
-                "mesh 0: vertex 0 has the image coordinates 8999999488 1; allowed: magnitudes up to 65536; the texture is left out",
-            ],
-        ),
-        (
-            load_stl,
-            stl_text(&[SQUARE_HALF])
-                .replace(
-                    "endsolid",
-                    "facet\nvertex 1 x 2\nendfacet\nfacet\nvertex 1 1 1\nendfacet\nendsolid",
-                )
-                .into_bytes(),
-            &[
-                "line 10: \"1 x 2\" are not three numbers; its triangle is left out",
-                "line 14: the facet has 1 corners; it takes at least 3; it is left out",
-            ],
-        ),
-        (
-            load_stl,
-            far,
-            &["triangle 0: a corner has a value that is not finite; it is left out"],
-        ),
-        (
-            load_ply,
-            nan.into_bytes(),
-            &[
-                "vertex 3: its x, y and z are not three finite numbers; faces with it are left out",
-                "face 2: it has the vertex 9, but there are 4; it is left out, and 3 more like it",
-                "line 19: values of \"face\" are missing; it is incomplete",
-            ],
-        ),
-    ] {
-        let png = encoded(image::ImageFormat::Png);
-        let beside: Files = &[
-            ("bad.mtl", b"Kd 1 1 1\nnewmtl a\nKd x y z\nd 0.5\nmap_Kd gone.png\nbump a.png\nmap_Ks b.png\nmap_d c.png\n"),
-            ("text.mtl", b"newmtl a\nmap_Kd bad.mtl\n"),
-            ("flag.mtl", b"newmtl a\nmap_Kd flag.png\n"),
-            ("flag.png", &png),
-        ];
-        told(format, &bytes, beside, sentences);
-    }
+    told(
+        load_stl,
+        far,
+        &[],
+        &["triangle 0: a corner has a value that is not finite; it is left out"],
+    );
 }
 
 #[test]
-fn what_leaves_nothing_to_draw_or_is_another_file_is_refused_in_a_sentence() {
-    let lfs = b"version https://git-lfs.github.com/spec/v1\n";
-    let page = b"<!DOCTYPE html><html>";
-    let points = ply_text("", "", PLACES, "");
-    for (format, bytes, sentence) in [
-        (
-            load_obj as LoadModel,
-            &b""[..],
-            "it is not an OBJ file: it is empty",
-        ),
-        (
-            load_obj,
-            lfs,
-            "it is not an OBJ file: it is a Git LFS pointer, which stands for the file; fetch the file with \"git lfs pull\"",
-        ),
-        (
-            load_stl,
-            page,
-            "it is not an STL file: it is an HTML page, perhaps one that a download ended at; fetch the file itself",
-        ),
-        (
-            load_ply,
-            b"PK\x03\x04",
-            "it is not a PLY file: it is a zip archive; unpack it first",
-        ),
-        (
-            load_obj,
-            b"ply\nformat",
-            "it is not an OBJ file: it is a PLY model; let its name end with .ply",
-        ),
-        (
-            load_stl,
-            b"glTF\x02",
-            "it is not an STL file: it is a glTF model; let its name end with .glb",
-        ),
-        (
-            load_obj,
-            CORNERS.as_bytes(),
-            "there is nothing to draw: it has 4 vertices and no faces; export it with faces",
-        ),
-        (
-            load_obj,
-            b"v 1 1 1\nf 1 2 3",
-            "there is nothing to draw: line 2: the face has the vertex \"2\", but there are 1; it is left out",
-        ),
-        (
-            load_obj,
-            b"hello",
-            "there is nothing to draw: it has 0 vertices and no faces; export it with faces",
-        ),
-        (
-            load_obj,
-            b"v 0 0 0\nv 1e-9 0 0\nv 0 1e-9 0\nf 1 2 3",
-            "the model is 1.4e-9 m large; models below 4e-6 m are too small to draw: scale it up",
-        ),
-        (
-            load_ply,
-            points.as_bytes(),
-            "there is nothing to draw: it has 4 points and no faces; export it with faces",
-        ),
-        (
-            load_ply,
-            b"hello",
-            "it is no PLY file: it does not begin with \"ply\"; fetch or export it again",
-        ),
-        (
-            load_ply,
-            b"ply\nformat ascii 1.0\nelement vertex 3",
-            "its header has no end_header; the file is truncated",
-        ),
-        (
-            load_ply,
-            b"ply\nformat ascii 1.0\nelement vertex many\n",
-            "line 3 of its header is \"element vertex many\"",
-        ),
-        (
-            load_ply,
-            b"ply\nproperty float x\n",
-            "line 2 of its header is \"property float x\"",
-        ),
-        (
-            load_ply,
-            b"ply\nend_header\n",
-            "its header has no line that says its format",
-        ),
-        (
-            load_stl,
-            b"hello",
-            "it is no STL file: it has neither text nor 84 bytes; fetch or export it again",
-        ),
-        (
-            load_stl,
-            b"solid x\nendsolid x\n",
-            "there is nothing to draw: it has no triangles; export it again",
-        ),
-    ] {
-        refused(format, bytes, sentence);
-    }
+fn a_file_of_another_kind_is_refused_in_a_sentence() {
+    refused(
+        load_ply,
+        b"PK\x03\x04",
+        "it is not a PLY file: it is a zip archive; unpack it first",
+    );
+    let sentence = "it is not an STL file: it is a glTF model; let its name end with .glb";
+    refused(load_stl, b"glTF\x02", sentence);
+    refused(
+        load_obj,
+        b"\xff\xd8\xff",
+        "it is not an OBJ file: it is a JPEG picture",
+    );
 }

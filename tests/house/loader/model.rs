@@ -1,14 +1,14 @@
 //! A glTF model that a test writes piece by piece, and checks that every loaded scene must pass.
 
-use glam::DVec3;
 use image::{ImageBuffer, ImageFormat, Rgba};
 use rasterlab::scene::{
     Material, Scene,
     gltf::{self, LoadError},
-    pose::{Motion, Pose},
     texture::Texture,
 };
 use serde_json::{Value, json};
+
+pub use super::sound::*;
 
 pub const I8: u32 = 5120;
 pub const U8: u32 = 5121;
@@ -40,9 +40,9 @@ impl Model {
     /// 2 3.
     pub fn square() -> Self {
         let mut model = Self::empty();
-        let positions = model.floats("VEC3", &SQUARE.concat());
-        let indices = model.shorts("SCALAR", &[0, 1, 2, 0, 2, 3]);
-        model.primitive(json!({ "attributes": { "POSITION": positions }, "indices": indices }));
+        model.floats("VEC3", &SQUARE.concat());
+        model.numbers("SCALAR U16 0 1 2 0 2 3");
+        model.primitive(json!({ "attributes": { "POSITION": 0 }, "indices": 1 }));
         model
     }
 
@@ -85,43 +85,145 @@ impl Model {
     }
 
     pub fn floats(&mut self, kind: &str, values: &[f32]) -> usize {
-        self.accessor(
-            &le_floats(values),
-            F32,
-            kind,
-            values.len() / components(kind),
+        let count = values.len() / components(kind);
+        self.accessor(&le_floats(values), F32, kind, count)
+    }
+
+    /// With an animation of one channel.
+    pub fn animated(self, target: Value, sampler: Value) -> Self {
+        let channels = json!([{ "sampler": 0, "target": target }]);
+        self.with(
+            "/animations",
+            json!([{ "name": "Move", "channels": channels, "samplers": [sampler] }]),
         )
     }
 
-    pub fn shorts(&mut self, kind: &str, values: &[u16]) -> usize {
-        let bytes: Vec<u8> = values.iter().flat_map(|v| v.to_le_bytes()).collect();
-        self.accessor(&bytes, U16, kind, values.len() / components(kind))
-    }
-
-    /// With one value of the JSON changed or added.
-    pub fn with(mut self, pointer: &str, value: Value) -> Self {
-        let (parent, key) = pointer.rsplit_once('/').unwrap();
-        let parent = self
-            .json
-            .pointer_mut(parent)
-            .unwrap_or_else(|| panic!("no {parent}"));
+    /// With one value of the JSON changed or added. `P` stands for the primitive, `A` for its
+    /// attributes, `M` for the material.
+    pub fn with(mut self, pointer: &str, value: impl Into<Value>) -> Self {
+        let (parent, key) = self.parent(pointer);
         match parent {
-            Value::Array(list) => list[key.parse::<usize>().unwrap()] = value,
-            _ => parent[key] = value,
+            Value::Array(list) => list[key.parse::<usize>().unwrap()] = value.into(),
+            _ => parent[key] = value.into(),
         }
         self
     }
 
     pub fn without(mut self, pointer: &str) -> Self {
-        let (parent, key) = pointer.rsplit_once('/').unwrap();
-        self.json
-            .pointer_mut(parent)
-            .unwrap()
-            .as_object_mut()
-            .unwrap()
-            .remove(key)
-            .unwrap();
+        let (parent, key) = self.parent(pointer);
+        parent.as_object_mut().unwrap().remove(&key).unwrap();
         self
+    }
+
+    fn parent(&mut self, pointer: &str) -> (&mut Value, String) {
+        let (first, rest) = pointer.split_at(pointer.find('/').unwrap_or(pointer.len()));
+        let start = match first {
+            "P" => "/meshes/0/primitives/0",
+            "A" => "/meshes/0/primitives/0/attributes",
+            "M" => "/materials/0",
+            _ => "",
+        };
+        let whole = format!("{start}{rest}");
+        let (parent, key) = whole.rsplit_once('/').unwrap();
+        let parent = self.json.pointer_mut(parent);
+        (parent.unwrap_or_else(|| panic!("no {pointer}")), key.into())
+    }
+
+    /// With a list of changes, one a line: `POINTER JSON`, `- POINTER` for what is taken away,
+    /// `& KIND TYPE NUMBERS` for one more accessor, where `0*12` are twelve numbers.
+    pub fn set(self, changes: &str) -> Self {
+        let lines = changes.lines().map(str::trim);
+        lines
+            .filter(|line| !line.is_empty())
+            .fold(self, |mut model, line| {
+                let (mark, rest) = line.split_once(' ').unwrap_or((line, ""));
+                match mark {
+                    "-" => model.without(rest),
+                    "&" => {
+                        model.numbers(rest);
+                        model
+                    }
+                    _ => {
+                        let value: Value = serde_json::from_str(rest)
+                            .unwrap_or_else(|error| panic!("{line}: {error}"));
+                        model.with(mark, value)
+                    }
+                }
+            })
+    }
+
+    /// An accessor written as in [`Self::set`].
+    pub fn numbers(&mut self, text: &str) -> usize {
+        let mut words = text.split(' ');
+        let [kind, component] = [0, 1].map(|_| words.next().expect("a kind and a type"));
+        let numbers: Vec<f64> = words
+            .flat_map(|word| {
+                let (number, count) = word.split_once('*').unwrap_or((word, "1"));
+                vec![number.parse().unwrap(); count.parse().unwrap()]
+            })
+            .collect();
+        let write = |number: &f64| match component {
+            "F32" => (*number as f32).to_le_bytes().to_vec(),
+            "I8" => vec![*number as i8 as u8],
+            "U8" => vec![*number as u8],
+            "I16" => (*number as i16).to_le_bytes().to_vec(),
+            "U16" => (*number as u16).to_le_bytes().to_vec(),
+            _ => (*number as u32).to_le_bytes().to_vec(),
+        };
+        let bytes: Vec<u8> = numbers.iter().flat_map(write).collect();
+        let types = [
+            ("I8", I8),
+            ("U8", U8),
+            ("I16", I16),
+            ("U16", U16),
+            ("U32", U32),
+            ("F32", F32),
+        ];
+        let (_, component) = types
+            .into_iter()
+            .find(|(name, _)| *name == component)
+            .unwrap();
+        self.accessor(&bytes, component, kind, numbers.len() / components(kind))
+    }
+
+    /// A transcript: changes as in [`Self::set`] up to a line that says what becomes of the model
+    /// with them; then it begins anew. `~ TEXT` is a fault and the part is dropped, `? TEXT` a note,
+    /// `! TEXT` a refusal, `_ TEXT` one or the other, `.` means that nothing is said, and `= TEXT` is
+    /// what [`describe`] tells, or these, with `&&` between them.
+    #[track_caller]
+    pub fn play(&self, transcript: &str) {
+        let mut changes = String::new();
+        for line in transcript.lines().map(str::trim) {
+            let (mark, text) = line.split_once(' ').unwrap_or((line, ""));
+            if mark == "#" {
+                continue;
+            }
+            if !["~", "?", "!", "_", ".", "="].contains(&mark) {
+                changes += line;
+                changes += "\n";
+                continue;
+            }
+            let model = self.clone().set(&changes);
+            changes.clear();
+            match mark {
+                "~" => drop(model.dropped(text)),
+                "?" => model.left_out(text),
+                "=" => {
+                    let found = describe(&model.scene());
+                    let parts = text.split(" && ");
+                    parts.for_each(|part| {
+                        assert!(found.contains(part), "{part}\nis not in {found}")
+                    });
+                }
+                "!" => model.refused(text),
+                "_" => model.without_it(text),
+                _ => drop(model.silent()),
+            }
+        }
+        assert!(
+            changes.trim().is_empty(),
+            "nothing is expected of {changes}"
+        );
     }
 
     pub fn glb(&self) -> Vec<u8> {
@@ -129,9 +231,7 @@ impl Model {
     }
 
     pub fn load(&self) -> Result<Scene, LoadError> {
-        gltf::load(&self.glb(), &mut |path, _| {
-            panic!("{} was asked for", path.display())
-        })
+        load(&self.glb())
     }
 
     pub fn scene(&self) -> Scene {
@@ -142,21 +242,25 @@ impl Model {
         scene
     }
 
+    /// It loads without a note.
+    #[track_caller]
+    pub fn silent(&self) -> Scene {
+        let scene = self.scene();
+        assert_eq!(scene.notes, [""; 0]);
+        scene
+    }
+
     /// The scene without a part: it loads, and one fault names the part.
     #[track_caller]
     pub fn dropped(&self, sentence: &str) -> Scene {
         let scene = self.scene();
         let faults = &scene.faults;
-        assert!(
-            faults
-                .iter()
-                .filter(|fault| fault.contains(sentence))
-                .count()
-                == 1
-                && scene.triangle_count() > 0,
-            "{} triangles, and said: {faults:?}\nnot:  {sentence}",
-            scene.triangle_count()
-        );
+        let count = faults
+            .iter()
+            .filter(|fault| fault.contains(sentence))
+            .count();
+        assert_eq!(count, 1, "said: {faults:?}\nnot:  {sentence}");
+        assert!(scene.triangle_count() > 0, "{sentence}");
         assert!(
             faults
                 .iter()
@@ -168,10 +272,9 @@ impl Model {
     /// It loads and says so, or is refused with the sentence where nothing else is left.
     #[track_caller]
     pub fn without_it(&self, sentence: &str) {
-        let said = match self.load() {
-            Ok(scene) => scene.faults,
-            Err(error) => vec![error.to_string()],
-        };
+        let said = self
+            .load()
+            .map_or_else(|error| vec![error.to_string()], |scene| scene.faults);
         assert!(
             said.iter().any(|said| said.contains(sentence)),
             "said: {said:?}\nnot:  {sentence}"
@@ -182,11 +285,8 @@ impl Model {
     #[track_caller]
     pub fn left_out(&self, sentence: &str) {
         let scene = self.scene();
-        assert!(
-            scene.notes.iter().any(|note| note.contains(sentence)) && scene.triangle_count() > 0,
-            "said: {:?}\nnot:  {sentence}",
-            scene.notes
-        );
+        assert_noted(&scene, sentence);
+        assert!(scene.triangle_count() > 0, "{sentence}");
     }
 
     #[track_caller]
@@ -199,34 +299,18 @@ impl Model {
     /// A square whose material "paper" shows the PNG "flag": accessor 0 holds positions, 1 texture
     /// coordinates, 2 indices; buffer view 3 holds the image.
     pub fn textured() -> Self {
-        let mut model = Self {
-            json: json!({
-                "asset": { "version": "2.0" }, "buffers": [{ "byteLength": 0 }], "bufferViews": [], "accessors": [],
-                "meshes": [{ "name": "X", "primitives": [{ "attributes": { "POSITION": 0, "TEXCOORD_0": 1 }, "indices": 2, "material": 0 }] }],
-                "nodes": [{ "mesh": 0 }], "scenes": [{ "nodes": [0] }], "scene": 0,
-                "materials": [{ "name": "paper", "pbrMetallicRoughness": { "baseColorTexture": { "index": 0 } } }],
-                "textures": [{ "source": 0, "sampler": 0 }], "samplers": [{}],
-                "images": [{ "name": "flag", "bufferView": 3, "mimeType": "image/png" }],
-            }),
-            bytes: Vec::new(),
-        };
-        let square = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 1.0, 0.0];
-        let positions = model.accessor(&le_floats(&square), F32, "VEC3", 4);
-        (
-            model.json["accessors"][positions]["min"],
-            model.json["accessors"][positions]["max"],
-        ) = (json!([0, 0, 0]), json!([1, 1, 0]));
-        model.accessor(
-            &le_floats(&[0.0, 0.0, 1.0, 0.0, 1.0, 1.0, 0.0, 1.0]),
-            F32,
-            "VEC2",
-            4,
-        );
-        model.accessor(
-            &le([0u16, 1, 2, 0, 2, 3].map(u16::to_le_bytes)),
-            U16,
-            "SCALAR",
-            6,
+        let mut model = Self::empty();
+        model.floats("VEC3", &SQUARE.concat());
+        let mut model = model.set(
+            r#"
+            & VEC2 F32 0 0 1 0 1 1 0 1
+            & SCALAR U16 0 1 2 0 2 3
+            /meshes/0/primitives [{"attributes":{"POSITION":0,"TEXCOORD_0":1},"indices":2,"material":0}]
+            /materials [{"name":"paper","pbrMetallicRoughness":{"baseColorTexture":{"index":0}}}]
+            /textures [{"source":0,"sampler":0}]
+            /samplers [{}]
+            /images [{"name":"flag","bufferView":3,"mimeType":"image/png"}]
+            "#,
         );
         assert_eq!(model.view(&encoded(ImageFormat::Png)), 3);
         model
@@ -246,6 +330,41 @@ impl Model {
     pub fn texture(&self) -> Texture {
         self.material().base_texture.expect("a texture")
     }
+}
+
+/// What a model has: numbers of its parts, its bounds, and the material of its first primitive.
+fn describe(scene: &Scene) -> String {
+    let [triangles, instances] = [scene.triangle_count(), scene.instances.len() as u64];
+    let [primitives, images] = [scene.primitives.len(), scene.images.len()];
+    let material = scene
+        .primitives
+        .first()
+        .map(|primitive| &scene.materials[primitive.material]);
+    format!(
+        "{triangles} triangles, {instances} instances, {primitives} primitives, {images} images, {:?}, {material:?}",
+        scene.bounds()
+    )
+}
+
+/// A sparse part of an accessor: indices of bytes and values from these views.
+pub fn sparse(count: usize, indices: usize, values: usize) -> Value {
+    json!({ "count": count, "indices": { "bufferView": indices, "componentType": U8 }, "values": { "bufferView": values } })
+}
+
+#[track_caller]
+pub fn assert_noted(scene: &Scene, sentence: &str) {
+    let notes = &scene.notes;
+    assert!(
+        notes.iter().any(|note| note.contains(sentence)),
+        "said: {notes:?}\nnot:  {sentence}"
+    );
+}
+
+/// Loads bytes that ask for no other file.
+pub fn load(bytes: &[u8]) -> Result<Scene, LoadError> {
+    gltf::load(bytes, &mut |path, _| {
+        panic!("{} was asked for", path.display())
+    })
 }
 
 pub const SQUARE: [[f32; 3]; 4] = [
@@ -283,10 +402,6 @@ pub fn glb(json: &[u8], binary: &[u8]) -> Vec<u8> {
     bytes
 }
 
-pub fn le<const N: usize>(values: impl IntoIterator<Item = [u8; N]>) -> Vec<u8> {
-    values.into_iter().flatten().collect()
-}
-
 /// 2 x 1 texels, red and translucent green.
 pub fn encoded(format: ImageFormat) -> Vec<u8> {
     let picture = ImageBuffer::<Rgba<u8>, _>::from_raw(2, 1, vec![255, 0, 0, 255, 0, 200, 0, 100])
@@ -302,149 +417,4 @@ pub fn encoded(format: ImageFormat) -> Vec<u8> {
             .expect("it is encoded"),
     }
     bytes.into_inner()
-}
-
-/// Corners of every triangle in world space, in drawing order.
-pub fn triangles(scene: &Scene) -> Vec<[[f64; 3]; 3]> {
-    let mut triangles = Vec::new();
-    for instance in &scene.instances {
-        let primitive = &scene.primitives[instance.primitive];
-        for t in 0..primitive.triangle_count() {
-            let corner = |vertex| {
-                instance
-                    .world_from_object
-                    .transform_point3(primitive.position(scene, vertex).map(f64::from).into())
-            };
-            triangles.push(
-                primitive
-                    .corners(scene, t)
-                    .map(|vertex| corner(vertex).to_array()),
-            );
-        }
-    }
-    triangles
-}
-
-/// The square's two triangles, for comparison.
-pub fn square() -> Vec<[[f64; 3]; 3]> {
-    [[0, 1, 2], [0, 2, 3]]
-        .map(|t| t.map(|c: usize| SQUARE[c].map(f64::from)))
-        .into()
-}
-
-/// Everything that later stages take for granted: each accessor can be read to its end, and every
-/// pose is finite.
-pub fn assert_sound(scene: &Scene) {
-    if !scene.rig.is_empty() {
-        let clips = (0..scene.rig.clips.len()).map(Some).chain([None]);
-        for (clip, time_s) in
-            clips.flat_map(|clip| [0.0, 0.7, 1e9, -3.5].map(|time_s| (clip, time_s)))
-        {
-            let pose = Pose::at(
-                scene,
-                &Motion {
-                    clip,
-                    time_s,
-                    ..Motion::default()
-                },
-            );
-            assert!((0..scene.instances.len()).all(|i| {
-                !pose.instance_transform(i).is_nan()
-                    && pose
-                        .deform(i)
-                        .is_none_or(|b| b.weights.iter().all(|w| w.is_finite()))
-            }));
-        }
-        assert!(
-            scene
-                .rig
-                .nodes
-                .iter()
-                .enumerate()
-                .all(|(i, node)| node.parent.is_none_or(|parent| parent < i))
-        );
-    }
-    assert!(
-        scene.vertex_bytes.len().is_multiple_of(4) && scene.index_bytes.len().is_multiple_of(4)
-    );
-    assert!(
-        scene
-            .instances
-            .iter()
-            .all(|i| i.primitive < scene.primitives.len() && i.world_from_object.is_finite())
-    );
-    for primitive in &scene.primitives {
-        assert!(primitive.material < scene.materials.len());
-        let deformation = &primitive.deformation;
-        let shapes = deformation
-            .morph_targets
-            .iter()
-            .flat_map(|shape| [shape.positions, shape.normals]);
-        let held = deformation
-            .influences
-            .iter()
-            .flat_map(|set| [Some(set.joints), Some(set.weights)]);
-        let attributes = [
-            Some(primitive.positions),
-            Some(primitive.normals),
-            primitive.colors,
-        ];
-        for accessor in attributes.into_iter().chain(shapes).chain(held).flatten() {
-            assert_eq!(accessor.count, primitive.vertex_count());
-            assert!(
-                accessor.offset % accessor.component_type.bytes() == 0
-                    && accessor.stride % accessor.component_type.bytes() == 0
-            );
-            for vertex in 0..accessor.count {
-                assert!((0..accessor.components).all(|component| {
-                    accessor
-                        .value(&scene.vertex_bytes, vertex, component)
-                        .is_finite()
-                }));
-            }
-        }
-        for vertex in 0..primitive.vertex_count() {
-            let p = DVec3::from(primitive.position(scene, vertex).map(f64::from));
-            assert!(p.cmpge(primitive.bounds.min).all() && p.cmple(primitive.bounds.max).all());
-        }
-        for t in 0..primitive.triangle_count() {
-            let corners = primitive.corners(scene, t);
-            assert!(corners.iter().all(|&c| c < primitive.vertex_count()));
-            let [a, b, c] =
-                corners.map(|c| DVec3::from(primitive.position(scene, c).map(f64::from)));
-            assert!(
-                a.distance(b).max(b.distance(c)).max(c.distance(a))
-                    <= primitive.longest_edge * (1.0 + 1e-12)
-            );
-        }
-    }
-}
-
-/// Corners of every triangle as a moment of a clip places and bends them.
-pub fn posed(scene: &Scene, clip: Option<usize>, time_s: f64) -> Vec<[[f64; 3]; 3]> {
-    let pose = Pose::at(
-        scene,
-        &Motion {
-            clip,
-            time_s,
-            ..Motion::default()
-        },
-    );
-    let mut triangles = Vec::new();
-    for (index, instance) in scene.instances.iter().enumerate() {
-        let primitive = &scene.primitives[instance.primitive];
-        let corner = |vertex| {
-            let object = match pose.deform(index) {
-                Some(deform) => deform.position(scene, primitive, vertex),
-                None => primitive.position(scene, vertex).map(f64::from).into(),
-            };
-            pose.instance_transform(index)
-                .transform_point3(object)
-                .to_array()
-        };
-        triangles.extend(
-            (0..primitive.triangle_count()).map(|t| primitive.corners(scene, t).map(corner)),
-        );
-    }
-    triangles
 }

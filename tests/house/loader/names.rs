@@ -234,7 +234,7 @@ fn a_file_that_is_cut_off_says_so_once_and_counts_what_it_lost() {
     let kept = whole.len() - 20 * 48;
     let scene =
         rasterlab::scene::gltf::load(&whole[..kept], &mut |_, _| unreachable!()).expect("a part");
-    let [there, stated] = [kept as u64, whole.len() as u64].map(rasterlab::params::grouped);
+    let [there, stated] = [kept as u64, whole.len() as u64].map(rasterlab::params::group_digits);
     let sentence = format!(
         "the file is cut off after {there} of {stated} bytes; 20 parts that need them are left out"
     );

@@ -48,7 +48,7 @@ fn passed(scene: &Scene, texel: usize) -> DVec3 {
     let image = &scene.images[material.base_texture.expect("a texture").image];
     let [r, g, b, alpha] = image.levels[0].texels[texel].map(|byte| f64::from(byte) / 255.0);
     let color = DVec3::new(r, g, b).map(rasterlab::math::linear_light);
-    let plain = crate::twins::plain_surface();
+    let plain = Surface::example(DVec3::ZERO, 0);
     let surface = Surface {
         color: color.extend(alpha),
         glow: DVec3::ZERO,

@@ -18,31 +18,6 @@ fn catalog() -> Catalog {
 }
 
 #[test]
-fn an_effect_of_a_file_is_read_written_and_animated_by_its_name() {
-    let text = "schema = 2\n\n[effects.ink]\namount = 0.25\ntint = [1.0, 0.0, 0.0, 1.0]\n\n[animation.ink]\nfalloff = [\n    { time_s = 0.0, value = 1.0 },\n    { time_s = 1.0, value = 4.0 },\n]\n";
-    let mut preset_file = parse_with(text, "mine", "mine.toml", &catalog()).unwrap();
-    assert!(
-        preset_file.warnings.is_empty(),
-        "{:?}",
-        preset_file.warnings
-    );
-    assert_eq!(to_toml(&preset_file), text);
-    preset_file::set(&mut preset_file, "ink.amount", "0.5").unwrap();
-    assert!(to_toml(&preset_file).contains("amount = 0.5"));
-    preset_file::unset(&mut preset_file, "ink").unwrap();
-    assert!(!to_toml(&preset_file).contains("ink"));
-    // Without the catalog the tables are kept, with a warning.
-    let unknown = parse(text);
-    assert!(
-        unknown
-            .warnings
-            .iter()
-            .any(|warning| warning.contains("effects.ink"))
-            && to_toml(&unknown) == text
-    );
-}
-
-#[test]
 fn a_value_outside_the_range_of_a_file_is_refused_with_its_line() {
     let text = "schema = 2\n[effects.ink]\namount = 7.0\n";
     let error = parse_with(text, "mine", "mine.toml", &catalog())
@@ -54,35 +29,6 @@ fn a_value_outside_the_range_of_a_file_is_refused_with_its_line() {
             && error.contains("0..=1"),
         "{error}"
     );
-}
-
-#[test]
-fn one_effect_stands_in_the_stack_more_than_once() {
-    let text = "schema = 2\nstack = [\"skin\", \"toon\", \"lens\"]\n\n[effects.skin]\neffect = \"toon\"\nsteps = 2\n\n[effects.toon]\n\n[effects.lens]\neffect = \"ink\"\n";
-    let mut preset_file = parse_with(text, "mine", "mine.toml", &catalog()).unwrap();
-    assert!(
-        preset_file.warnings.is_empty(),
-        "{:?}",
-        preset_file.warnings
-    );
-    let names: Vec<&str> = preset_file
-        .preset
-        .stack
-        .0
-        .iter()
-        .map(|enabled| enabled.effect.name.as_str())
-        .collect();
-    assert_eq!(names, ["skin", "toon", "lens"]);
-    assert_eq!(to_toml(&preset_file), text);
-    preset_file::set(&mut preset_file, "skin.steps", "5").unwrap();
-    preset_file::set(&mut preset_file, "coat.effect", "fog").unwrap();
-    let written = to_toml(&preset_file);
-    assert!(
-        written.contains("[effects.coat]\neffect = \"fog\"") && written.contains("steps = 5"),
-        "{written}"
-    );
-    let again = parse_with(&written, "mine", "mine.toml", &catalog()).unwrap();
-    assert_eq!(bits(&again.preset), bits(&preset_file.preset));
 }
 
 #[test]
@@ -135,10 +81,12 @@ fn a_shared_preset_brings_its_effects_and_says_so() {
     // One that is known with the same text is nothing new.
     let known = parse_with(&to_toml(&back), "mine", "mine.toml", &catalog()).unwrap();
     assert!(known.brought_effects.is_empty());
-    let faulty = "schema = 2\n[effect_files]\nink = \"fn ink() {}\"\n";
-    let error = refusal(faulty);
-    assert!(
-        error.contains("effect_files.ink") && error.contains("hook"),
-        "{error}"
-    );
+}
+
+#[test]
+fn without_its_file_the_tables_of_an_effect_are_kept_with_a_warning() {
+    let text = "schema = 2\n\n[effects.ink]\namount = 0.25\n";
+    let unknown = parse(text);
+    all_told(&unknown.warnings, "effects.ink");
+    assert_eq!(to_toml(&unknown), text);
 }

@@ -7,8 +7,7 @@ use rasterlab::{
     frame::Frame,
     oracle,
     params::Measure,
-    preset::{Fit, LengthUnit, Preset, Track},
-    preset_file::set,
+    preset::{Fit, LengthUnit, Preset},
     scene::{Bounds, Scene, builtin},
 };
 
@@ -179,12 +178,14 @@ fn a_room_does_not_count_for_the_unit_of_the_scene() {
     };
     let amount = |scene: &Scene| {
         let stack = preset.stack_on(scene, preset.output.size);
-        let inflate = stack.get("inflate").expect("it is enabled");
-        inflate
-            .effect
-            .field("amount_m")
-            .expect("a field")
-            .get(&inflate.words)[0]
+        values(
+            &Preset {
+                stack,
+                ..preset.clone()
+            },
+            "inflate",
+            "amount_m",
+        )[0]
     };
     for query in ["knot?tess=4", "tentacle?tess=3"] {
         let scene = || builtin::build(query).expect("a built-in scene");
@@ -196,30 +197,25 @@ fn a_room_does_not_count_for_the_unit_of_the_scene() {
     }
 }
 
-#[test]
-fn every_kind_of_length_is_fitted_by_its_unit() {
-    let bounds = |center: DVec3, half: f64| Bounds {
+fn around(center: DVec3, half: f64) -> Bounds {
+    Bounds {
         min: center - half,
         max: center + half,
-    };
+    }
+}
+
+#[test]
+fn every_kind_of_length_is_fitted_by_its_unit() {
     let fit = Fit::between(
-        &bounds(DVec3::new(1.0, 2.0, 3.0), 1.0),
-        &bounds(DVec3::new(10.0, 20.0, 30.0), 2.0),
-    )
-    .expect("a fit");
+        &around(DVec3::new(1.0, 2.0, 3.0), 1.0),
+        &around(DVec3::new(10.0, 20.0, 30.0), 2.0),
+    );
+    let fit = fit.expect("a fit");
     let preset = look(
         "[effects.fog]\ndensity = 1.0\nstart_m = 3.0\nlevel_m = 2.5\n[effects.particles]\nhalf_axes = [1.0, 2.0, 3.0]\ncenter = [2.0, 2.0, 3.0]\nspeed_mps = 0.5\n\
          attraction = 4.0\nlifetime_s = 2.0\n[effects.hatch]\nspacing_px = 5.0\nspacing_m = 0.5\n[animation.fog]\nstart_m = [{ time_s = 0, value = 1.0 }]\n",
     );
     let fitted = preset.fitted(&fit).0;
-    let value = |effect: &str, field: &str| {
-        let enabled = fitted.stack.get(effect).expect("it is enabled");
-        enabled
-            .effect
-            .field(field)
-            .expect("a field")
-            .get(&enabled.words)
-    };
     for (effect, field, wanted) in [
         ("fog", "density", vec![0.5]),
         ("fog", "start_m", vec![6.0]),
@@ -233,26 +229,21 @@ fn every_kind_of_length_is_fitted_by_its_unit() {
         // It counts only where the lines lie on the surface.
         ("hatch", "spacing_m", vec![0.5]),
     ] {
-        assert_eq!(value(effect, field), wanted, "{effect}.{field}");
+        assert_eq!(values(&fitted, effect, field), wanted, "{effect}.{field}");
     }
-    assert_eq!(
-        fitted
-            .animation
-            .get("fog", "start_m")
-            .map(Track::keys)
-            .map(|keys| keys[0].value.clone()),
-        Some(vec![2.0])
-    );
+    let keys = fitted
+        .animation
+        .get("fog", "start_m")
+        .expect("it is animated")
+        .keys();
+    assert_eq!(keys[0].value, [2.0]);
     assert_eq!(fitted.polyline[0], [11.0, 16.0, 27.0]);
     assert_eq!(fitted.fitted(&fit.inverse()).0, preset, "the way back");
 }
 
 #[test]
 fn a_length_that_its_range_does_not_allow_is_kept_inside_and_named() {
-    let bounds = |half: f64| Bounds {
-        min: DVec3::splat(-half),
-        max: DVec3::splat(half),
-    };
+    let bounds = |half: f64| around(DVec3::ZERO, half);
     let fit = Fit::between(&bounds(1.0), &bounds(1e5)).expect("a fit");
     let preset = look(
         "[effects.explode]\namount_m = 0.5\n[effects.fog]\nstart_m = 2.0\n[animation.fog]\nlevel_m = [{ time_s = 0, value = 20.0 }, { time_s = 1, value = 30.0 }]\n",
@@ -298,28 +289,4 @@ fn parameters_of_the_built_in_effects_know_what_they_measure() {
     ] {
         assert_eq!(of(path), wanted, "{path}");
     }
-}
-
-#[test]
-fn the_unit_is_a_key_of_the_file_and_of_the_command_line() {
-    let preset_file = parse("schema = 2\n[scene]\nunit = \"scene\" # kept\n[effects.fog]\n");
-    assert_eq!(preset_file.preset.unit, LengthUnit::Scene);
-    let mut changed = preset_file.clone();
-    set(&mut changed, "scene.unit", "m").expect("a unit");
-    assert_eq!(changed.preset.unit, LengthUnit::Meter);
-    assert!(
-        preset_file::to_toml(&changed).contains("unit = \"m\" # kept"),
-        "{}",
-        preset_file::to_toml(&changed)
-    );
-    assert_eq!(
-        parse("schema = 2\n[effects.fog]\n").preset.unit,
-        LengthUnit::Meter,
-        "meters unless the file says otherwise"
-    );
-    let refused = refusal("schema = 2\n[scene]\nunit = \"feet\"\n");
-    assert!(
-        refused.contains("scene.unit") && refused.contains("m, scene"),
-        "{refused}"
-    );
 }

@@ -17,8 +17,9 @@ mod text;
 use std::path::{Path, PathBuf};
 
 use rasterlab::{
+    effect_files::{Catalog, Hook, template},
     preset::Preset,
-    preset_file::{self, PresetFile},
+    preset_file::{self, PresetFile, parse_with},
 };
 
 fn parse(text: &str) -> PresetFile {
@@ -29,21 +30,6 @@ fn refusal(text: &str) -> String {
     match preset_file::parse(text, "preset") {
         Err(error) => error.to_string(),
         Ok(_) => panic!("this should have been refused:\n{text}"),
-    }
-}
-
-/// Every line is a text that is refused, with ¶ for its line breaks after `head`, and behind ⇒ words
-/// of the refusal; those that begin with its place are the whole of it.
-fn all_refused(head: &str, cases: &str) {
-    for case in cases.trim().lines() {
-        let (text, wanted) = case.split_once(" ⇒ ").expect("an arrow");
-        let said = refusal(&format!("{head}{}\n", text.trim().replace('¶', "\n")));
-        let is_whole = wanted.starts_with("preset.toml:");
-        assert!(
-            said == wanted || !is_whole && said.contains(wanted),
-            "{case}\n{said}"
-        );
-        assert!(!said.contains('\n'), "{said}");
     }
 }
 
@@ -64,32 +50,17 @@ fn stack_names(preset_file: &PresetFile) -> Vec<&str> {
         .collect()
 }
 
-/// Sets values; each line is a path, =, and a value.
-fn set_all(preset_file: &mut PresetFile, lines: &str) {
-    for line in lines.trim().lines() {
-        let (path, value) = line.split_once('=').expect("a value");
-        preset_file::set(preset_file, path, value).unwrap_or_else(|error| panic!("{error}"));
-    }
-}
-
-/// Each line is a path, =, a value that is refused, and behind ⇒ words of the refusal.
-fn all_unset(preset_file: &PresetFile, lines: &str) {
-    for line in lines.trim().lines() {
-        let (set, wanted) = line.split_once(" ⇒ ").expect("an arrow");
-        let (path, value) = set.split_once('=').expect("a value");
-        let mut changed = preset_file.clone();
-        let error = preset_file::set(&mut changed, path, value)
-            .expect_err(line)
-            .to_string();
-        assert!(
-            error.contains(wanted) && !error.contains('\n'),
-            "{line}\n{error}"
-        );
-        assert_eq!(
-            changed.preset, preset_file.preset,
-            "a refused value changes nothing"
-        );
-    }
+/// The numbers of a parameter.
+fn values(preset: &Preset, effect: &str, field: &str) -> Vec<f64> {
+    let enabled = preset
+        .stack
+        .get(effect)
+        .unwrap_or_else(|| panic!("{effect} is not enabled"));
+    enabled
+        .effect
+        .field(field)
+        .expect("a parameter")
+        .get(&enabled.words)
 }
 
 /// Everything in a preset as bits and words, so that -0.0 and 0.0 differ.
@@ -105,4 +76,89 @@ fn preset_files() -> Vec<PathBuf> {
     files
         .filter(|path| path.extension().is_some_and(|e| e == "toml"))
         .collect()
+}
+
+/// Plays a transcript on a preset, `schema = 2` at first, with the effect ink of a file; ¶ ends a
+/// line of it.
+///
+/// - `@ TEXT` reads another one, without a warning;
+/// - `set PATH=VALUE` and `unset PATH` change it, `! PATH=VALUE ⇒ WORDS` is refused and changes
+///   nothing;
+/// - `= TEXT` is what is written, `> TEXT` and `>- TEXT` stand in it or do not, and what is written
+///   is read as the same;
+/// - `& TEXT` is read as the same preset; `stack NAMES`, `moves` and `still` say what it is.
+fn play(transcript: &str) {
+    let mut catalog = Catalog::default();
+    catalog
+        .add_text("ink", &template("ink", Hook::Surface))
+        .unwrap();
+    let read = |text: &str| {
+        let file = parse_with(text, "preset", "preset.toml", &catalog);
+        file.unwrap_or_else(|error| panic!("{error}\n{text}"))
+    };
+    let mut file = PresetFile::new("new", Preset::default());
+    for line in transcript.lines().filter(|line| !line.is_empty()) {
+        let (mark, text) = line.split_once(' ').unwrap_or((line, ""));
+        let text = text.replace('¶', "\n");
+        let written = preset_file::to_toml(&file);
+        let told = || format!("{line}\n{written}");
+        assert_eq!(
+            bits(&read(&written).preset),
+            bits(&file.preset),
+            "{}",
+            told()
+        );
+        match mark {
+            "@" => file = read(&text),
+            "set" => {
+                let (path, value) = text.split_once('=').expect("a value");
+                preset_file::set(&mut file, path, value).unwrap_or_else(|error| panic!("{error}"));
+            }
+            "unset" => preset_file::unset(&mut file, &text).unwrap(),
+            "!" => {
+                let (set, wanted) = text.split_once(" ⇒ ").expect("an arrow");
+                let (path, value) = set.split_once('=').expect("a value");
+                let before = file.preset.clone();
+                let error = preset_file::set(&mut file, path, value)
+                    .expect_err(line)
+                    .to_string();
+                assert!(
+                    error.contains(wanted) && !error.contains('\n'),
+                    "{line}\n{error}"
+                );
+                assert_eq!(file.preset, before, "a refused value changes nothing");
+            }
+            "=" => assert_eq!(written, text, "{line}"),
+            ">" => assert!(written.contains(&text), "{}", told()),
+            ">-" => assert!(!written.contains(&text), "{}", told()),
+            "&" => assert_eq!(bits(&file.preset), bits(&read(&text).preset), "{}", told()),
+            "stack" => assert_eq!(stack_names(&file).join(" "), text, "{}", told()),
+            "moves" => assert!(file.preset.is_moving(), "{}", told()),
+            "still" => assert!(
+                file.preset.animation.is_empty() && !file.preset.is_moving(),
+                "{}",
+                told()
+            ),
+            "#" => {}
+            _ => panic!("the transcript has no meaning: {line}"),
+        }
+        assert_eq!(
+            file.warnings
+                .iter()
+                .filter(|warning| !["later", "future"]
+                    .iter()
+                    .any(|word| warning.contains(word)))
+                .count(),
+            0,
+            "{:?}",
+            file.warnings
+        );
+    }
+}
+
+#[test]
+fn presets_change_as_the_transcripts_say() {
+    for part in include_str!("transcripts.txt").split("=== ").skip(1) {
+        play(part.split_once('\n').expect("a title and a transcript").1);
+    }
 }

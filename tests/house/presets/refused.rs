@@ -8,67 +8,38 @@ use rasterlab::{
 
 use super::*;
 
+/// Every line of the file is a text that is refused, where a line of `===` says, in it at the … or
+/// behind it, with ¶ for line breaks; behind ⇒ stand words of the refusal, and those that begin with
+/// a place are the whole of it.
 #[test]
 fn errors_name_line_key_value_and_range() {
-    let cases = r##"
-[effects.facet]¶amount = -1 ⇒ preset.toml:3: effects.facet.amount -1 lies outside 0..=1
-[effects.facet]¶amount = 1e39 ⇒ preset.toml:3: effects.facet.amount 1e39 is too large for a 32-bit float, which ends at 3.4028235e38
-[effects.facet]¶amount = nan ⇒ preset.toml:3: effects.facet.amount nan is not a finite number
-[effects.facet]¶seed = 1.5 ⇒ preset.toml:3: effects.facet.seed 1.5 must be a whole number
-[effects.facet]¶seed = -1 ⇒ preset.toml:3: effects.facet.seed -1 lies outside 0..=4294967295
-[effects.facet]¶pattern = "radail" ⇒ preset.toml:3: effects.facet.pattern "radail" is not one of uniform, sweep, radial, random; did you mean "radial"?
-[effects.facet]¶center = [1, 2] ⇒ preset.toml:3: effects.facet.center must be a list of 3 numbers, not a list of 2
-[effects.depth]¶fit = 1 ⇒ preset.toml:3: effects.depth.fit must be true or false, not a number
-[output]¶size = [16385, 1] ⇒ preset.toml:3: output.size 16385 lies outside 0..=16384
-[ground]¶size = 0 ⇒ preset.toml:3: ground.size 0 lies outside 0.1..=1e3
-[ground]¶cells = 129 ⇒ preset.toml:3: ground.cells 129 lies outside 1..=128
-[ground]¶shape = "dics" ⇒ preset.toml:3: ground.shape "dics" is not one of disc, square; did you mean "disc"?
-[output]¶background_bottom = [0, 0, 2, 1] ⇒ preset.toml:3: output.background_bottom 2 lies outside 0..=1
-[camera]¶fov_y_deg = 180 ⇒ preset.toml:3: camera.fov_y_deg 180 lies outside 1..=179
-[camera]¶eye = [0, inf, 0] ⇒ preset.toml:3: camera.eye inf is not a finite number
-[camera]¶eye = [0, 1e10, 0] ⇒ preset.toml:3: camera.eye 1e10 lies outside -1e9..=1e9
-[accuracy]¶tier = 3 ⇒ preset.toml:3: accuracy.tier must be one of draft, fast, precise, reference, strict, not a number
-[test]¶max_pixels = 9 ⇒ preset.toml:2: test.why must say why the budget is above the default
-[test]¶max_wrong_triangles = 9¶why = "because" ⇒ preset.toml:2: test.max_wrong_triangles must be 0 here; it needs a pinned option that is not exact, or the tier draft or fast
-[accuracy]¶visibility = "race"¶[test]¶max_wrong_triangles = 9 ⇒ preset.toml:4: test.why must say why the budget is above the default
-name = "\u001b[31m" ⇒ preset.toml:2: name contains the control character '\u{1b}'
-effects = 3 ⇒ preset.toml:2: effects must be a table, written [effects]
-effects.facet = true ⇒ preset.toml:2: effects.facet must be a table, written [effects.facet]
-[[camera]] ⇒ preset.toml:2: camera must be a table, written [camera]
-[scene]¶path = "https://example.org/a.glb" ⇒ preset.toml:3: scene.path must be a file, not an address
-[scene]¶path = "a.glb"¶builtin = "knot" ⇒ preset.toml:3: scene.path and scene.builtin exclude each other
-[clock]¶range_s = [2, 2] ⇒ preset.toml:3: clock.range_s must rise, but 2 is not before 2
-[clock]¶speed = 0 ⇒ preset.toml:3: clock.speed 0 lies outside 0.01..=100
-animation = 3 ⇒ preset.toml:2: animation must be a table, written [animation]
-[animation]¶facet = 3 ⇒ preset.toml:3: animation.facet must be a table, written [animation.facet]
-"##;
-    all_refused("schema = 2\n", cases);
-    let schemas = r##"
-# mine¶schema = 1 ⇒ preset.toml:2: schema 1 is older than 2, the oldest that this program reads; write schema = 2, then mend the keys that are reported as unknown
-schema = "2" ⇒ preset.toml:1: schema must be the whole number 2
-"##;
-    all_refused("", schemas);
+    for part in include_str!("refused.txt").split("=== ").skip(1) {
+        let (around, cases) = part.split_once('\n').expect("a text and cases");
+        let around = if around.contains('…') {
+            around.to_owned()
+        } else {
+            format!("{around}¶…")
+        };
+        for case in cases.lines().filter(|case| !case.is_empty()) {
+            let (text, wanted) = case.split_once(" ⇒ ").expect("an arrow");
+            let text = around
+                .trim_start_matches('¶')
+                .replace('…', text.trim())
+                .replace('¶', "\n");
+            let said = refusal(&(text + "\n"));
+            let is_whole = wanted.starts_with("preset.toml:");
+            assert!(
+                said == wanted || !is_whole && said.contains(wanted),
+                "{case}\n{said}"
+            );
+            assert!(!said.contains('\n'), "{said}");
+        }
+    }
 }
 
 #[test]
-fn keys_that_cannot_be_are_refused_by_name() {
+fn a_track_has_at_most_so_many_keys() {
     let head = "schema = 2\n[effects.facet]\n[animation.facet]\n";
-    let cases = r##"
-amount = [{ time_s = 0, value = 2 }] ⇒ preset.toml:4: animation.facet.amount keyframe 1: value 2 lies outside 0..=1
-amount = [{ time_s = 0, value = nan }] ⇒ preset.toml:4: animation.facet.amount keyframe 1: value nan is not a finite number
-amount = [{ time_s = 0, value = 1e-46 }] ⇒ value 1e-46 is too small for a 32-bit float
-amount = [{ time_s = 2e9, value = 0 }] ⇒ keyframe 1: time_s 2e9 lies outside -1e9..=1e9
-amount = [{ time_s = 0, value = 0 },¶ { time_s = -0.0, value = 1 }] ⇒ preset.toml:5: animation.facet.amount keyframe 2: there is already a keyframe at time_s -0
-amount = [{ time_s = 0, value = 0, easing = "smoth" }] ⇒ "smoth" is not one of hold, linear, smooth, in, out; did you mean "smooth"?
-amount = [{ time_s = 0 }] ⇒ preset.toml:4: animation.facet.amount keyframe 1 must have time_s and value
-amount = [{}] ⇒ animation.facet.amount keyframe 1 must have time_s and value
-amount = [] ⇒ preset.toml:4: animation.facet.amount must be a list of 1 to 256 keyframes such as { time_s = 0.0, value = … }
-amount = [0.5] ⇒ must be a list of 1 to 256 keyframes
-amount = 3 ⇒ must be a list of 1 to 256 keyframes
-seed = [{ time_s = 0, value = 1, easing = "linear" }] ⇒ keyframe 1: easing must be hold, not linear
-center = [{ time_s = 0, value = 1 }] ⇒ value must be a list of 3 numbers
-"##;
-    all_refused(head, cases);
     let many: String = (0..=MAX_KEYFRAMES)
         .map(|i| format!("{{ time_s = {i}, value = 0 }}, "))
         .collect();

@@ -319,16 +319,6 @@ fn a_parameter_survives_whatever_its_bits() {
 }
 
 #[test]
-fn no_text_panics() {
-    for_seeds(300, |rng| {
-        let text = text(rng, 200);
-        let _ = preset_file::parse(&text, "any");
-        let _ = preset_file::from_line(&text);
-        let _ = preset_file::preset_from_png(text.as_bytes(), "any");
-    });
-}
-
-#[test]
 fn every_random_preset_is_one_that_a_file_may_hold() {
     for seed in 0..60 {
         let random = PresetFile::new("random", random::preset(seed));

@@ -46,80 +46,12 @@ fn a_scope_survives_the_text_and_the_line() {
 }
 
 #[test]
-fn one_text_is_a_list_of_one_and_an_empty_list_is_the_whole_scene() {
-    assert_eq!(
-        on(
-            &parse("schema = 2\n[effects.toon]\non = \"mesh:x\"\n"),
-            "toon"
-        ),
-        "mesh:x"
-    );
-    let whole = parse("schema = 2\n[effects.toon]\non = []\n");
-    assert_eq!(on(&whole, "toon"), "whole scene");
-    assert_eq!(whole.preset, parse("schema = 2\n[effects.toon]\n").preset);
-    assert!(!to_toml(&PresetFile::new("fresh", whole.preset)).contains("on ="));
-}
-
-#[test]
-fn set_and_unset_change_a_scope_and_its_line() {
-    let mut preset_file = parse("schema = 2\n\n[effects.toon]\nsteps = 2 # few\n");
-    preset_file::set(
-        &mut preset_file,
-        "toon.on",
-        "[\"node:Body\", \"node:Body\", \"mesh:*\"]",
-    )
-    .unwrap();
-    assert_eq!(on(&preset_file, "toon"), "node:Body, mesh:*");
-    assert_eq!(
-        to_toml(&preset_file),
-        "schema = 2\n\n[effects.toon]\nsteps = 2 # few\non = [\"node:Body\", \"mesh:*\"]\n"
-    );
-    // A bare word is a text, and setting a scope enables the effect.
-    preset_file::set(&mut preset_file, "effects.fog.on", "material:clay").unwrap();
-    assert_eq!(on(&preset_file, "fog"), "material:clay");
-    preset_file::unset(&mut preset_file, "toon.on").unwrap();
-    preset_file::unset(&mut preset_file, "fog").unwrap();
-    assert_eq!(
-        to_toml(&preset_file),
-        "schema = 2\n\n[effects.toon]\nsteps = 2 # few\n"
-    );
-}
-
-#[test]
-fn a_faulty_scope_is_refused_with_its_line_and_what_is_allowed() {
-    let allowed = "a pattern is material:NAME, node:NAME or mesh:NAME, where * is any text and ? any character";
-    for (value, reason) in [
-        ("3", "must be a list of patterns such as"),
-        ("[1, 2]", "must be a list of patterns such as"),
-        ("{ node = 1 }", "must be a list of patterns such as"),
-        ("[\"Lens\"]", allowed),
-        ("\"nod:Lens\"", "where \"nod\" is no kind of part"),
-        ("[\"node:\"]", "has no name after the colon"),
-        ("[\"mesh:\\u0007\"]", "has a control character"),
-    ] {
-        let error = refusal(&format!("schema = 2\n[effects.toon]\non = {value}\n"));
-        assert!(
-            error.starts_with("preset.toml:3: effects.toon.on ")
-                && error.contains(reason)
-                && !error.contains('\n'),
-            "{error}"
-        );
-        let mut preset_file = parse("schema = 2\n");
-        let error = preset_file::set(&mut preset_file, "toon.on", value)
-            .unwrap_err()
-            .to_string();
-        assert!(
-            error.contains(reason) && preset_file.preset.stack.0.is_empty(),
-            "{error}"
-        );
-    }
+fn a_scope_has_at_most_so_many_patterns() {
     let long = format!(
         "schema = 2\n[effects.toon]\non = [{}]\n",
         "\"mesh:x\", ".repeat(33)
     );
     assert!(refusal(&long).contains("has 33 patterns; at most 32 are allowed"));
-    let table = refusal("schema = 2\n[effects.toon.on]\nnode = 1\n");
-    assert!(table.contains("effects.toon.on must be a list"), "{table}");
 }
 
 #[test]

@@ -6,11 +6,11 @@ use std::path::Path;
 use rasterlab::{
     effects::Effect,
     preset::{
-        AccuracyRequest, Clock, PinnedOptions, Preset, SceneSource, Tier, Visibility,
+        AccuracyRequest, Clock, PinnedOptions, Tier, Visibility,
         animation::{Easing, Keyframe, Track},
     },
-    preset_file::{self, PresetFile},
-    scene::camera::{Camera, Projection},
+    preset_file,
+    scene::camera::Projection,
 };
 
 use super::*;
@@ -129,95 +129,6 @@ fn an_unmodified_preset_is_written_byte_for_byte() {
 }
 
 #[test]
-fn comments_and_unknown_keys_survive_a_change() {
-    let text = "# head\nschema = 2\n# why\nfuture = { a = 1 }\n\n[camera] # pose\neye = [1.0, 2.0, 3.0] # high\nup = [0.0, 1.0, 0.5]\n\n[effects.facet]\n# half\namount = 0.5 # of the way\n\n[effects.later]\nx = 1\n# tail\n";
-    let mut preset_file = parse(text);
-    preset_file::set(&mut preset_file, "facet.amount", ".25").unwrap();
-    preset_file::set(&mut preset_file, "camera.eye", "[1, 2, 4]").unwrap();
-    preset_file::unset(&mut preset_file, "camera.up").unwrap();
-    let written = preset_file::to_toml(&preset_file);
-    let wanted = text
-        .replace("amount = 0.5 #", "amount = 0.25 #")
-        .replace("3.0] # high", "4.0] # high")
-        .replace("up = [0.0, 1.0, 0.5]\n", "");
-    assert_eq!(written, wanted);
-    preset_file::unset(&mut preset_file, "facet.amount").unwrap();
-    assert!(
-        preset_file::to_toml(&preset_file).contains("# half\namount = 1.0 # of the way"),
-        "a commented line is kept with its default"
-    );
-}
-
-#[test]
-fn only_differences_from_defaults_are_written() {
-    let mut preset_file = PresetFile::new("new", Preset::default());
-    assert_eq!(preset_file::to_toml(&preset_file), "schema = 2\n");
-    set_all(
-        &mut preset_file,
-        "facet=\nlambert.headlight=0.2\naccuracy.tier=draft\ncamera=",
-    );
-    assert_eq!(
-        preset_file::to_toml(&preset_file),
-        "schema = 2\n\n[camera]\n\n[effects.facet]\n\n[effects.lambert]\nheadlight = 0.2\n\n[accuracy]\ntier = \"draft\"\n"
-    );
-    for path in [
-        "effects.lambert.headlight",
-        "accuracy",
-        "camera",
-        "facet",
-        "lambert",
-    ] {
-        preset_file::unset(&mut preset_file, path).unwrap();
-    }
-    assert_eq!(preset_file::to_toml(&preset_file), "schema = 2\n");
-}
-
-#[test]
-fn the_stack_key_is_written_only_where_order_is_unusual() {
-    let mut preset_file = parse("schema = 2\n[effects.facet]\n[effects.lambert]\n");
-    preset_file.preset.stack.0.reverse();
-    let written = preset_file::to_toml(&preset_file);
-    assert!(
-        written.contains("stack = [\"lambert\", \"facet\"]"),
-        "{written}"
-    );
-    let mut again = parse(&written);
-    assert_eq!(again.preset, preset_file.preset);
-    again.preset.stack.0.reverse();
-    assert!(!preset_file::to_toml(&again).contains("stack"));
-    preset_file::set(&mut preset_file, "stack", "[\"facet\", \"lambert\"]").unwrap();
-    assert!(preset_file.preset.stack.is_canonical());
-}
-
-#[test]
-fn the_stack_key_names_each_enabled_effect_exactly_once() {
-    let with = |stack: &str| {
-        refusal(&format!(
-            "schema = 2\nstack = {stack}\n[effects.facet]\n[effects.lambert]\n"
-        ))
-    };
-    for (stack, wanted) in [
-        (
-            r#"["facet"]"#,
-            "preset.toml:2: stack leaves out lambert, which is enabled",
-        ),
-        (
-            r#"["facet", "lambert", "facet"]"#,
-            "preset.toml:2: stack names facet twice",
-        ),
-        (
-            r#"["facet", "lambert", "depth"]"#,
-            "names depth, which is not enabled",
-        ),
-        (r#"["fascet", "lambert"]"#, "did you mean \"facet\"?"),
-        (r#""facet""#, "must be a list of effect names"),
-    ] {
-        let said = with(stack);
-        assert!(said.contains(wanted), "{said}");
-    }
-}
-
-#[test]
 fn tables_and_inline_tables_say_the_same_keys() {
     let inline = parse(
         "schema = 2\n[effects.facet]\n[animation]\nfacet.amount = [{ time_s = 0, value = 0.5 }, { time_s = 1, value = 1 }]\n",
@@ -279,71 +190,6 @@ fn keys_are_written_one_a_line_and_comments_stay_with_theirs() {
 }
 
 #[test]
-fn set_animates_and_a_value_set_by_hand_holds_still() {
-    let mut preset_file = PresetFile::new("new", Preset::default());
-    set_all(
-        &mut preset_file,
-        "animation.facet.amount=[{ time_s = 0, value = 0 }, { time_s = 1, value = 1 }]\nclock.range_s=[1, 2]",
-    );
-    assert!(preset_file.preset.is_moving() && preset_file.preset.stack.get("facet").is_some());
-    assert_eq!(
-        parse(&preset_file::to_toml(&preset_file)).preset,
-        preset_file.preset
-    );
-    let faulty = "
-animation.facet.amount=[{ time_s = 0, value = 9 }] ⇒ keyframe 1: value 9 lies outside 0..=1
-animation.facet.amount=[ ⇒ --set: animation.facet.amount
-animation.facet=1 ⇒ animation.facet takes no value
-animation.facet.amuont=[] ⇒ did you mean \"amount\"?
-animation.camera.eye=[] ⇒ is unknown; only parameters of effects can be animated
-clock.range_s=[2, 1] ⇒ clock.range_s must rise
-";
-    all_unset(&preset_file, faulty);
-    preset_file::set(&mut preset_file, "facet.amount", "0.5").unwrap();
-    assert!(preset_file.preset.animation.is_empty() && !preset_file.preset.is_moving());
-    for unset in [
-        "animation.facet.amount",
-        "animation.facet",
-        "animation",
-        "facet.amount",
-        "facet",
-    ] {
-        set_all(
-            &mut preset_file,
-            "animation.facet.amount=[{ time_s = 0, value = 0 }]",
-        );
-        preset_file::unset(&mut preset_file, unset).unwrap();
-        assert!(preset_file.preset.animation.is_empty(), "{unset}");
-    }
-}
-
-#[test]
-fn set_obeys_the_rules_of_files() {
-    let mut preset_file = PresetFile::new("new", Preset::default());
-    let faulty = "
-facet.amount=2 ⇒ --set: facet.amount 2 lies outside 0..=1
-facet.amount=inf ⇒ facet.amount inf is not a finite number
-facet.amuont=1 ⇒ facet.amuont is unknown; did you mean \"amount\"?
-fascet.amount=1 ⇒ did you mean \"facet.amount\"?
-output.size=[1] ⇒ output.size must be a list of 2 numbers
-facet=1 ⇒ facet takes no value
-stack=[\"facet\"] ⇒ stack names facet, which is not enabled
-facet.amount= ⇒ facet.amount needs a value, as in --set facet.amount=VALUE
-camera.eye= ⇒ --set: camera.eye needs a value
-stack= ⇒ --set: stack needs a value
-";
-    all_unset(&preset_file, faulty);
-    let values = "effects.facet.pattern=random\ndepth.fit=false\nname=42\nscene.builtin=teapot?tess=16\ntags=[\"a\"]";
-    set_all(&mut preset_file, values);
-    let preset = &preset_file.preset;
-    assert_eq!((preset.name.as_str(), preset.stack.0.len()), ("42", 2));
-    assert_eq!(preset.scene, SceneSource::Builtin("teapot?tess=16".into()));
-    preset_file::set(&mut preset_file, "camera.orthographic_height_m", "3").unwrap();
-    preset_file::unset(&mut preset_file, "camera.orthographic_height_m").unwrap();
-    assert_eq!(preset_file.preset.camera, Some(Camera::default()));
-}
-
-#[test]
 fn schema_json_is_up_to_date() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("presets/schema.json");
     if std::env::var_os("UPDATE_SNAPSHOTS").is_some() {
@@ -385,14 +231,4 @@ fn an_edit_of_one_value_neither_prints_nor_parses_a_whole_preset() {
             "crates/files/src/preset_file/edit.rs uses {name}"
         );
     }
-    // The text of an effect that only a newer program knows counts for the order all the same.
-    let mut preset_file =
-        parse("schema = 2\n[effects.facet]\n[effects.lambert]\n[effects.later]\n");
-    set_all(
-        &mut preset_file,
-        "stack=[\"lambert\", \"later\", \"facet\"]",
-    );
-    assert_eq!(stack_names(&preset_file), ["lambert", "facet"]);
-    let unknown = "stack=[\"lambert\", \"never\", \"facet\"] ⇒ never";
-    all_unset(&preset_file, unknown);
 }

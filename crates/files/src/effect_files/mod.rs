@@ -1,24 +1,18 @@
 //! Effect files: effects that anyone can write, one WGSL file each. A file is read, checked, made
 //! safe to link, and evaluated in f64 for the oracle.
 
-mod attributes;
-mod bounds;
 mod catalog;
 mod check;
-mod declaration;
 mod duplicate;
-mod error;
 mod evaluated;
 mod images;
-mod parameters;
 mod precision;
 mod read;
 mod rewrite;
 mod soundness;
 mod template;
-mod tokens;
-mod twin;
-mod words;
+
+use rasterlab_model::effects::text::{declaration, error, parameters, tokens, twin, words};
 
 pub use self::{
     catalog::{Catalog, CustomEffect},

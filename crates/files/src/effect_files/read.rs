@@ -8,14 +8,16 @@ use std::{
 
 use super::{
     check::{self, Parts},
-    declaration,
+    declaration::{self, Author},
     error::{EffectError, Text},
     images, rewrite,
     twin::{self, Function},
     words,
 };
 use crate::{
-    effects::{EMBEDDED_IMAGE, Effect, EffectSource, SurfaceInput, hooks::Hooks},
+    effects::{
+        EMBEDDED_IMAGE, Effect, EffectSource, SurfaceInput, hooks::Hooks, text::reads_triangle,
+    },
     evaluator::Precision,
     shader::library::Library,
 };
@@ -165,7 +167,7 @@ fn read_anew(
             false => MAX_BYTES,
         },
     )?;
-    let declaration = declaration::read(&text, stem)?;
+    let declaration = declaration::read(&text, stem, Author::Anybody)?;
     let named = &declaration.parameters.images;
     check_length(
         written.len() - images::embedded_bytes(written, named),
@@ -173,7 +175,7 @@ fn read_anew(
     )?;
     let fields = &declaration.parameters.fields;
     if let Some(vertex) = &declaration.hooks.vertex
-        && rewrite::lengths(fields).next().is_none()
+        && twin::lengths(fields).next().is_none()
     {
         let name = declaration.tokens.iter().find(|token| token.text == vertex);
         let message = "a vertex effect needs an f32 parameter with @unit(m): it moves a vertex by at most the sum of these lengths";
@@ -192,6 +194,7 @@ fn read_anew(
         about: declaration.about.clone(),
         hooks: Hooks::default(),
         fields: fields.clone(),
+        given: declaration.parameters.given.clone(),
         defaults: declaration.parameters.defaults.clone(),
         wgsl_struct: EffectSource::unique(stem, declaration.struct_name),
         source: Some(source.clone()),
@@ -239,9 +242,7 @@ fn read_anew(
         .collect();
     let hooks = &mut effect.hooks;
     if let Some(name) = &source.functions.vertex {
-        let needs_triangle = ["flat_normal", "center", "arm", "center_screen", "triangle"]
-            .iter()
-            .any(|member| members.contains(member));
+        let needs_triangle = reads_triangle(&declaration.tokens);
         hooks.vertex = Some(twin::vertex(
             function(name, Precision::Double)?,
             function(name, Precision::Single)?,
@@ -284,7 +285,8 @@ fn read_anew(
         ));
     }
     // Any comparison in the text may be a step of color.
-    hooks.has_steps = source.functions.surface.is_some() || source.functions.image.is_some();
+    let has_color = source.functions.surface.is_some() || source.functions.image.is_some();
+    hooks.has_steps = has_color && !declaration.is_smooth;
     Ok(effect)
 }
 

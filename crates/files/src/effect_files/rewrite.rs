@@ -1,13 +1,10 @@
 //! Rewriting: the text of an effect file as it is linked. Attributes are blanked, names that the
 //! file declares get a prefix of their own, and every loop counts its turns.
 
-use std::{fmt::Write, sync::Arc};
+use std::fmt::Write;
 
-use super::declaration::Declaration;
-use crate::{
-    effects::{EffectSource, HookFunctions},
-    params::{Field, ValueType},
-};
+use super::{declaration::Declaration, twin::lengths};
+use crate::effects::{EffectSource, HookFunctions};
 
 /// Turns that the loops of one effect may take together in one invocation; every loop ends then.
 pub const MAX_TURNS: u32 = 4096;
@@ -243,13 +240,6 @@ pub fn in_names_of_author(stem: &str, declaration: &Declaration<'_>, message: &s
         message = message.replace(&generated(stem, hook), name.as_deref().unwrap_or(hook));
     }
     message.replace(&generated(stem, "turns"), "the counter of turns")
-}
-
-/// Lengths among the parameters: a vertex effect moves a vertex by at most their sum.
-pub fn lengths(fields: &[Arc<Field>]) -> impl Iterator<Item = &Arc<Field>> {
-    fields
-        .iter()
-        .filter(|field| field.unit == "m" && field.value_type == ValueType::F32)
 }
 
 /// The end of a vertex hook: it changes offset and normal alone, and the offset by at most the sum

@@ -1,5 +1,6 @@
 //! Templates: the commented file that a new effect begins with.
 
+use super::declaration::type_name;
 use crate::params::did_you_mean;
 
 /// The hook of a new effect.
@@ -47,18 +48,6 @@ impl Hook {
             )
         })
     }
-}
-
-/// The name of the struct of an effect: `my_ink` is `MyInk`.
-pub fn type_name(name: &str) -> String {
-    let capital = |word: &str| {
-        word.chars()
-            .take(1)
-            .flat_map(char::to_uppercase)
-            .chain(word.chars().skip(1))
-            .collect::<String>()
-    };
-    name.split('_').map(capital).collect()
 }
 
 /// The text of a new effect called `name`.

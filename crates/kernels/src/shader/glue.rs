@@ -93,23 +93,8 @@ fn constructor(effect: &Effect, words: &[u32]) -> String {
         }
     };
     let members = effect.members();
-    let members = members
-        .chunk_by(|a, b| a.group.is_some() && a.group == b.group)
-        .map(|fields| {
-            let members = fields
-                .iter()
-                .map(|field| member(field))
-                .collect::<Vec<_>>()
-                .join(", ");
-            fields[0].group.map_or(members.clone(), |group| {
-                format!("{}({members})", group.wgsl_struct)
-            })
-        });
-    format!(
-        "{}({})",
-        effect.wgsl_struct,
-        members.collect::<Vec<_>>().join(", ")
-    )
+    let members: Vec<String> = members.iter().map(|field| member(field)).collect();
+    format!("{}({})", effect.wgsl_struct, members.join(", "))
 }
 
 /// A hook as the kernels call it.

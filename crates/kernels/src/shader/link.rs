@@ -32,7 +32,10 @@ use super::{
     source::{Directive, Signature, Source},
     specialize::with_constants,
 };
-use crate::{accuracy::Visibility, effects::Effect};
+use crate::{
+    accuracy::Visibility,
+    effects::{Effect, text::without_attributes},
+};
 
 /// A linked module with the way back to its files.
 #[derive(Clone, Debug)]
@@ -145,7 +148,12 @@ impl Section {
 /// A file of the library: its sections by name; the name of its head is empty.
 type File = HashMap<String, Arc<Section>>;
 
-fn file_of(text: &str) -> Arc<File> {
+fn file_of(name: &str, text: &str) -> Arc<File> {
+    // What effects say of their parameters is no WGSL.
+    let text = match name.starts_with("effects/") {
+        true => &without_attributes(text),
+        false => text,
+    };
     let section = |(name, range): (&str, Range<usize>)| {
         let first_line = text[..range.start].matches('\n').count();
         (name.to_owned(), Section::new(first_line, &text[range]))
@@ -156,14 +164,17 @@ fn file_of(text: &str) -> Arc<File> {
 /// The embedded files, read once.
 static EMBEDDED: LazyLock<HashMap<String, Arc<File>>> = LazyLock::new(|| {
     Library::embedded()
-        .map(|(name, text)| (name, file_of(text)))
+        .map(|(name, text)| {
+            let file = file_of(&name, text);
+            (name, file)
+        })
         .collect()
 });
 
 fn file(library: &Library, name: &str) -> Option<Arc<File>> {
     match library {
         Library::Embedded => EMBEDDED.get(name).cloned(),
-        Library::Outside(_) => library.text(name).map(|text| file_of(&text)),
+        Library::Outside(_) => library.text(name).map(|text| file_of(name, &text)),
     }
 }
 
@@ -554,25 +565,6 @@ impl<'a> Linker<'a> {
                         &effect.wgsl_struct,
                     )),
                 }
-            }
-        }
-        // The structs of parameters that several effects share, where their files are not part of
-        // the module.
-        let groups: BTreeSet<&str> = self
-            .key
-            .effects
-            .list
-            .iter()
-            .flat_map(|effect| &effect.fields)
-            .filter_map(|field| Some(field.group?.wgsl_struct))
-            .collect();
-        for group in groups {
-            let name = format!("lib/{}", group.to_lowercase());
-            if !self.taken.contains_key(&name) {
-                text.push_str(glue::struct_text(
-                    &self.load_head(&name, "the stack")?.text,
-                    group,
-                ));
             }
         }
         self.append("glue", None, &text);

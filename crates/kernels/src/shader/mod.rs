@@ -9,7 +9,6 @@ pub mod glue;
 pub mod image_files;
 pub mod image_passes;
 pub mod key;
-pub mod library;
 pub mod link;
 pub mod pass;
 pub mod reflect;
@@ -18,3 +17,4 @@ pub mod specialize;
 
 pub use key::{Fetch, KernelKey};
 pub use pass::Pass;
+pub use rasterlab_model::shaders as library;

@@ -14,22 +14,16 @@ use super::{
 };
 use crate::{
     math::{hash, hash_unit},
-    params,
-    params::Color,
+    words,
 };
 
-params! {
-    pub struct Ambient {
-        /// What hidden light is multiplied by, linear; its alpha is the strength.
-        shade: Color = [0.05, 0.06, 0.1, 1.0];
-        /// How far away something still hides the sky; at least a pixel.
-        radius_m: f32 = 0.5, hard 0.0001..=10000.0, soft 0.01..=10.0, log true, unit "m";
-        /// Strength: 1 darkens by the fraction that is hidden.
-        strength: f32 = 2.0, hard 0.0..=16.0, soft 0.0..=4.0;
-        /// The radius in the picture is at most this.
-        most_px: f32 = 32.0, hard 1.0..=512.0, soft 4.0..=96.0, unit "px";
-        /// How far noise is smoothed, on what is about equally far away.
-        soft_px: u32 = 3, hard 0.0..=16.0, soft 0.0..=8.0, unit "px";
+words! {
+    pub struct Ambient of "ambient" {
+        shade: [f32; 4],
+        radius_m: f32,
+        strength: f32,
+        most_px: f32,
+        soft_px: u32,
     }
 }
 
@@ -37,18 +31,12 @@ params! {
 const TAPS: i32 = 20;
 
 pub static EFFECT: BuiltIn = BuiltIn::new(|| {
-    Effect::new::<Ambient>(
-        "ambient",
-        "Ambient",
-        "corners and folds darken where little sky reaches them",
-    )
+    Effect::declared::<Ambient>()
     .on_passes::<Ambient>()
     .into()
 });
 
 impl PassEffect for Ambient {
-    const PASSES: &'static [(&'static str, u32)] = &[("find", 1), ("across", 1), ("shade", 1)];
-
     fn pass(index: usize, at: &ImageAt, p: &Self) -> DVec4 {
         match index {
             0 => p.find(at),

@@ -6,50 +6,38 @@ use super::{
     BuiltIn, Effect,
     hooks::{ImageAt, PassEffect, tone::smooth},
 };
-use crate::{choice, params};
+use crate::{choice, words};
 
 choice! {
     /// Where the picture is blurred.
     pub enum Area {
         /// All of it.
-        Everywhere = "everywhere",
+        Everywhere,
         /// Above and below a band, as a tilted lens does, which makes landscapes look like models.
-        Band = "band",
+        Band,
         /// Around a disc.
-        Disc = "disc",
+        Disc,
     }
 }
 
-params! {
-    pub struct Blur {
-        /// Where the picture is blurred.
-        area: Area = Area::Band as u32;
-        /// How far light spreads.
-        radius_px: f32 = 7.0, hard 0.0..=96.0, soft 0.0..=32.0, unit "px";
-        /// Middle of what stays sharp, from the left edge at 0 to the right one at 1.
-        center_x: f32 = 0.5, hard 0.0..=1.0, when ("area", &["disc"]);
-        /// The same from the top to the bottom.
-        center_y: f32 = 0.55, hard 0.0..=1.0, when ("area", &["band", "disc"]);
-        /// Half of the width of what stays sharp, in heights of the picture.
-        sharp: f32 = 0.08, hard 0.0..=2.0, soft 0.0..=1.0, when ("area", &["band", "disc"]);
-        /// Over which distance the blur grows, in heights of the picture.
-        soft: f32 = 0.35, hard 0.001..=2.0, soft 0.01..=1.0, when ("area", &["band", "disc"]);
+words! {
+    pub struct Blur of "blur" {
+        area: u32,
+        radius_px: f32,
+        center_x: f32,
+        center_y: f32,
+        sharp: f32,
+        soft: f32,
     }
 }
 
 pub static EFFECT: BuiltIn = BuiltIn::new(|| {
-    Effect::new::<Blur>(
-        "blur",
-        "Blur",
-        "out of focus, everywhere or away from a sharp band or disc",
-    )
+    Effect::declared::<Blur>()
     .on_passes::<Blur>()
     .into()
 });
 
 impl PassEffect for Blur {
-    const PASSES: &'static [(&'static str, u32)] = &[("across", 1), ("down", 1)];
-
     fn pass(index: usize, at: &ImageAt, p: &Self) -> DVec4 {
         let along = if index == 0 { [1, 0] } else { [0, 1] };
         let radius = f64::from(p.radius_px) * p.strength(at.middle(), at.picture_size());

@@ -6,34 +6,27 @@ use super::{
     BuiltIn, Effect,
     hooks::{ImageAt, PassEffect, tone::turned},
 };
-use crate::{choice, math::HASH_GOLDEN, params};
+use crate::{choice, math::HASH_GOLDEN, words};
 
 choice! {
     /// What is in focus.
     pub enum Focus {
         /// What is seen at a place of the picture, or nearest to it where nothing is.
-        Place = "place",
+        Place,
         /// A distance.
-        Distance = "distance",
+        Distance,
     }
 }
 
-params! {
-    pub struct DepthOfField {
-        /// What is in focus.
-        focus: Focus = Focus::Place as u32;
-        /// The place in focus, from the left edge at 0 to the right one at 1.
-        focus_x: f32 = 0.5, hard 0.0..=1.0, when ("focus", &["place"]);
-        /// The same from the top to the bottom.
-        focus_y: f32 = 0.5, hard 0.0..=1.0, when ("focus", &["place"]);
-        /// Distance in focus, along the viewing direction.
-        focus_m: f32 = 6.0, hard 0.001..=1000000.0, soft 0.1..=100.0, log true, unit "m", when ("focus", &["distance"]);
-        /// Radius of the disc to which a point infinitely far away spreads.
-        aperture_px: f32 = 16.0, hard 0.0..=1024.0, soft 0.0..=64.0, unit "px";
-        /// The largest such radius.
-        most_px: f32 = 10.0, hard 1.0..=120.0, soft 1.0..=32.0, unit "px";
-        /// How much more bright points weigh than dark ones.
-        highlights: f32 = 3.0, hard 0.0..=64.0, soft 0.0..=16.0;
+words! {
+    pub struct DepthOfField of "depth_of_field" {
+        focus: u32,
+        focus_x: f32,
+        focus_y: f32,
+        focus_m: f32,
+        aperture_px: f32,
+        most_px: f32,
+        highlights: f32,
     }
 }
 
@@ -59,18 +52,12 @@ const COMPASS: [[i64; 2]; 8] = [
 ];
 
 pub static EFFECT: BuiltIn = BuiltIn::new(|| {
-    Effect::new::<DepthOfField>(
-        "depth_of_field",
-        "DepthOfField",
-        "what is out of focus spreads to discs of light",
-    )
+    Effect::declared::<DepthOfField>()
     .on_passes::<DepthOfField>()
     .into()
 });
 
 impl PassEffect for DepthOfField {
-    const PASSES: &'static [(&'static str, u32)] = &[("", 1)];
-
     fn pass(_: usize, at: &ImageAt, p: &Self) -> DVec4 {
         let here_m = at.depth_m(at.x, at.y);
         let focus_m = p.focus_m(at);

@@ -5,54 +5,44 @@
 //! a corner or the centroid √p of the way, so that p per cent mean p per cent. Integers decide,
 //! sample by sample.
 
-use glam::{DVec2, DVec3, DVec4};
+use glam::{DVec2, DVec3};
 
 use super::{
-    BuiltIn, Effect, Surface, SurfaceEffect, SurfaceInput,
+    BuiltIn, Effect, 
     hooks::{Front, Pattern, Sample, SampleEffect, TriangleSetup},
 };
-use crate::{choice, math::hash, params, params::Color};
+use crate::{choice, math::hash, words};
 
 choice! {
     /// How a triangle fills.
     pub enum Mode {
         /// From the edge opposite the corner.
-        Edge = "edge",
+        Edge,
         /// From the corner.
-        Corner = "corner",
+        Corner,
         /// From the middle.
-        Centroid = "centroid",
+        Centroid,
         /// Row by row, left to right.
-        Scanline = "scanline",
+        Scanline,
         /// Pixel by pixel, at random.
-        Hash = "hash",
+        Hash,
     }
 }
 
-params! {
-    pub struct Dissolve {
-        ..spread: Front = Front { seed: 0, ..Front::default() }, always_shown "seed";
-        /// Color of the glowing rim, alpha is its strength.
-        rim: Color = [1.0, 0.45, 0.1, 0.0];
-        /// Fraction of a triangle that stays: 0 nothing, 1 everything; behind the front where there is one.
-        fill: f32 = 0.5, hard 0.0..=1.0;
-        /// How a triangle fills.
-        mode: Mode = Mode::Corner as u32;
-        /// Which of the three corners the sweep is about.
-        corner: u32 = 0, hard 0.0..=2.0, when ("mode", &["edge", "corner"]);
-        /// Width of the glowing rim, as a fraction of the path.
-        rim_width: f32 = 0.25, hard 0.001..=10.0, soft 0.01..=1.0, log true;
+words! {
+    pub struct Dissolve of "dissolve" {
+        rim: [f32; 4],
+        fill: f32,
+        mode: u32,
+        corner: u32,
+        rim_width: f32,
+        spread: Front,
     }
 }
 
 pub static EFFECT: BuiltIn = BuiltIn::new(|| {
-    Effect::new::<Dissolve>(
-        "dissolve",
-        "Dissolve",
-        "fills every triangle to a fraction of its area",
-    )
+    Effect::declared::<Dissolve>()
     .on_sample::<Dissolve>()
-    .on_surface::<Dissolve>()
     .into()
 });
 
@@ -151,35 +141,5 @@ impl SampleEffect for Dissolve {
             Mode::Scanline | Mode::Hash => return pixel < threshold,
         };
         u64::from(way) << 16 < u64::from(threshold) * u64::from(whole)
-    }
-}
-
-impl SurfaceEffect for Dissolve {
-    const INPUTS: &[SurfaceInput] = &[
-        SurfaceInput::Center,
-        SurfaceInput::CenterScreen,
-        SurfaceInput::TriangleId,
-        SurfaceInput::Barycentrics,
-        SurfaceInput::Color,
-    ];
-
-    /// A rim that glows where the triangle is about to go.
-    fn apply(mut s: Surface, p: &Self) -> Surface {
-        let fill = p
-            .fill_of(s.center, s.center_screen, s.triangle_id)
-            .clamp(0.0, 1.0);
-        let part = s.barycentrics[p.corner.min(2) as usize];
-        let (way, end) = match Mode::of(p.mode) {
-            Mode::Edge => (part, 1.0 - (1.0 - fill).sqrt()),
-            Mode::Corner => (1.0 - part, fill.sqrt()),
-            Mode::Centroid => (1.0 - 3.0 * s.barycentrics.min_element(), fill.sqrt()),
-            Mode::Scanline | Mode::Hash => (0.0, fill),
-        };
-        // The rim is born as the triangle starts to go, so a whole one has none.
-        let near = (1.0 - (end - way) / f64::from(p.rim_width)).clamp(0.0, 1.0)
-            * (8.0 * (1.0 - fill)).min(1.0);
-        let [red, green, blue, strength] = p.rim.map(f64::from);
-        s.color += DVec4::new(red, green, blue, 0.0) * (strength * near * near);
-        s
     }
 }

@@ -9,8 +9,8 @@
 
 use super::{BuiltIn, Effect};
 use crate::{
-    choice, params,
-    params::{Color, Flag},
+    choice,
+    words,
     scene::view::View,
 };
 
@@ -18,47 +18,34 @@ choice! {
     /// The lines along which dots are drawn.
     pub enum LineSource {
         /// Every edge of every mesh, once.
-        Edges = "edges",
+        Edges,
         /// The edges at which faces meet at an angle, and open ones.
-        Creases = "creases",
+        Creases,
         /// The preset's own line, `scene.polyline`.
-        Polyline = "polyline",
+        Polyline,
     }
 }
 
-params! {
-    pub struct Dots {
-        /// Color of the dots, linear; its alpha is their strength.
-        color: Color = [1.0, 0.55, 0.15, 1.0];
-        /// The lines along which dots are drawn.
-        lines: LineSource = LineSource::Edges as u32;
-        /// The least angle between two faces that counts as a crease.
-        crease_deg: f32 = 25.0, hard 0.0..=180.0, soft 1.0..=90.0, unit "°", when ("lines", &["creases"]);
-        /// Distance from dot to dot along the line.
-        spacing_m: f32 = 0.05, hard 0.00001..=1000.0, soft 0.001..=10.0, log true, unit "m";
-        /// Diameter of the dots.
-        size_px: f32 = 2.5, hard 1.0..=128.0, soft 1.0..=16.0, unit "px";
-        /// The gap on the screen below which every second dot begins to fade.
-        min_gap_px: f32 = 6.0, hard 0.25..=1024.0, soft 1.0..=64.0, log true, unit "px";
-        /// How often the dots may be halved; 0: all are drawn, however dense.
-        levels: u32 = 20, hard 0.0..=24.0;
-        /// Fraction of the distance from one halving to the next over which dots fade.
-        fade: f32 = 1.0, hard 0.0625..=1.0;
-        /// Strength of dots behind the model, relative to visible ones.
-        hidden_opacity: f32 = 0.2, hard 0.0..=1.0;
-        /// How far behind the surface a dot still counts as on it, as a fraction of its distance.
-        bias: f32 = 0.01, hard 0.0..=0.5, soft 0.0001..=0.1, log true;
-        /// The model shows beneath the dots; without it, it only hides them.
-        show_model: Flag = 1;
-        /// Length of a dash of dots, at least their distance; 0: the line has dots all along.
-        dash_m: f32 = 0.0, hard 0.0..=1000.0, soft 0.0..=2.0, unit "m";
-        /// Gap between two dashes. Both are stretched alike so that a line begins and ends with a whole dash.
-        gap_m: f32 = 0.1, hard 0.0..=1000.0, soft 0.0..=2.0, unit "m";
+words! {
+    pub struct Dots of "dots" {
+        color: [f32; 4],
+        lines: u32,
+        crease_deg: f32,
+        spacing_m: f32,
+        size_px: f32,
+        min_gap_px: f32,
+        levels: u32,
+        fade: f32,
+        hidden_opacity: f32,
+        bias: f32,
+        show_model: u32,
+        dash_m: f32,
+        gap_m: f32,
     }
 }
 
 pub static EFFECT: BuiltIn = BuiltIn::new(|| {
-    Effect::new::<Dots>("dots", "Dots", "draws dots along edges or a polyline")
+    Effect::declared::<Dots>()
         .with_lines()
         .into()
 });

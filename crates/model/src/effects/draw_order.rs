@@ -6,18 +6,16 @@
 //! scheduler's order each sample takes a number from a counter: how many are drawn is exact, which
 //! ones depends on the hardware.
 
-use glam::DVec4;
-
-use super::{BuiltIn, Effect, Surface, SurfaceEffect, SurfaceInput, hooks::Slot, read};
-use crate::{choice, params, params::Color};
+use super::{BuiltIn, Effect, hooks::Slot, read};
+use crate::{choice, words};
 
 choice! {
     /// In which order samples are counted.
     pub enum Mode {
         /// In the order of the triangles; repeatable.
-        Submission = "submission",
+        Submission,
         /// In the order of the hardware, which differs from frame to frame.
-        Scheduler = "scheduler",
+        Scheduler,
     }
 }
 
@@ -25,37 +23,26 @@ choice! {
     /// How the limit is given.
     pub enum Unit {
         /// A fraction of all samples.
-        Fraction = "fraction",
+        Fraction,
         /// A number of samples.
-        Count = "count",
+        Count,
     }
 }
 
-params! {
-    pub struct DrawOrder {
-        /// Color of what is drawn first; alpha is its weight against the surface's color.
-        first: Color = [0.05, 0.1, 0.5, 0.0];
-        /// Color of what is drawn last; alpha is its weight against the surface's color.
-        last: Color = [1.0, 0.35, 0.05, 0.0];
-        /// In which order samples are counted.
-        mode: Mode = Mode::Submission as u32;
-        /// How the limit is given.
-        unit: Unit = Unit::Fraction as u32;
-        /// Samples to draw.
-        limit: u32 = 20000, soft 0.0..=200000.0, when ("unit", &["count"]);
-        /// Fraction of all samples to draw.
-        fraction: f32 = 0.5, hard 0.0..=1.0, when ("unit", &["fraction"]);
+words! {
+    pub struct DrawOrder of "draw_order" {
+        first: [f32; 4],
+        last: [f32; 4],
+        mode: u32,
+        unit: u32,
+        limit: u32,
+        fraction: f32,
     }
 }
 
 pub static EFFECT: BuiltIn = BuiltIn::new(|| {
-    Effect::new::<DrawOrder>(
-        "draw_order",
-        "DrawOrder",
-        "stops the picture after a number of samples",
-    )
+    Effect::declared::<DrawOrder>()
     .in_slot(Slot::Order)
-    .on_surface::<DrawOrder>()
     .repeatable_if(|words| Mode::of(read::<DrawOrder>(words).mode) == Mode::Submission)
     .into()
 });
@@ -71,22 +58,5 @@ impl DrawOrder {
                 ((u128::from(total) * fraction + (1 << 23)) >> 24) as u64
             }
         }
-    }
-}
-
-impl SurfaceEffect for DrawOrder {
-    const INPUTS: &[SurfaceInput] = &[SurfaceInput::Rank, SurfaceInput::Glow, SurfaceInput::Color];
-
-    /// Heat by rank: the fraction of all samples that precede the triangle.
-    fn apply(mut s: Surface, p: &Self) -> Surface {
-        let [first, last] = [p.first, p.last].map(|color| DVec4::from_array(color.map(f64::from)));
-        let heat = first.lerp(last, s.rank);
-        s.glow *= 1.0 - heat.w;
-        s.color = s
-            .color
-            .truncate()
-            .lerp(heat.truncate(), heat.w)
-            .extend(s.color.w);
-        s
     }
 }

@@ -8,15 +8,17 @@ use std::{
 use base64::{Engine as _, engine::general_purpose::STANDARD};
 
 use super::{
+    given::GivenMember,
     hooks::{
-        Hooks, ImageAt, ImageEffect, ImageHook, ImagePass, LitEffect, PassEffect, PassHook,
-        Picture, SampleEffect, SampleHook, Slot, SurfaceEffect, SurfaceInput, VertexEffect,
-        VertexHook,
+        Hooks, ImageAt, LitEffect, PassEffect, SampleEffect, SampleHook, Slot, SurfaceEffect,
+        SurfaceInput, VertexEffect, VertexHook,
     },
     image_file::ImageInput,
+    text::built_in,
 };
 use crate::{
-    params::{Field, Param, Params, ValueType, WgslType},
+    effects::Words,
+    params::{Field, Param, ValueType, WgslType},
     scene::particle_discs::ParticleSettings,
 };
 
@@ -30,6 +32,8 @@ pub struct Effect {
     pub about: String,
     pub hooks: Hooks,
     pub fields: Vec<Arc<Field>>,
+    /// What it is given beside its parameters.
+    pub given: Vec<GivenMember>,
     /// Parameter words with every default.
     pub defaults: Vec<u32>,
     /// Name of the WGSL struct.
@@ -47,30 +51,23 @@ pub struct Effect {
 pub type BuiltIn = LazyLock<Arc<Effect>>;
 
 impl Effect {
-    /// An effect with parameters `P` and no hook yet.
-    pub fn new<P: Params>(name: &str, wgsl_struct: &str, about: &str) -> Self {
-        Self {
-            name: name.into(),
-            about: about.into(),
-            hooks: Hooks::default(),
-            fields: P::fields().into_iter().map(Arc::new).collect(),
-            defaults: bytemuck::pod_collect_to_vec(&[P::default()]),
-            wgsl_struct: wgsl_struct.into(),
-            source: None,
-            base: None,
-            is_repeatable: |_| true,
+    /// The effect whose parameter words `P` holds, as its file declares it: with the hooks that its
+    /// functions are on.
+    pub fn declared<P: Words>() -> Self {
+        let effect = built_in(P::EFFECT).unwrap_or_else(|error| panic!("{error}"));
+        // Members that are structs are no fields.
+        for (name, offset) in P::MEMBERS {
+            let field = effect.field(name);
+            let is_there = field.is_none_or(|field| field.offset == *offset);
+            assert!(is_there, "{}.{name} lies elsewhere in its file", P::EFFECT);
         }
-    }
-
-    /// An effect on the surface hook alone.
-    pub fn surface<P: SurfaceEffect>(name: &str, wgsl_struct: &str, about: &str) -> Self {
-        Self::new::<P>(name, wgsl_struct, about).on_surface::<P>()
+        assert!(size_of::<P>() <= 4 * effect.defaults.len(), "{}", P::EFFECT);
+        effect
     }
 
     /// The same effect, also on the surface hook.
     pub fn on_surface<P: SurfaceEffect>(mut self) -> Self {
         self.hooks.surface = Some(Arc::new(|surface, words| P::apply(surface, &read(words))));
-        self.hooks.surface_inputs = P::INPUTS.to_vec();
         self
     }
 
@@ -117,38 +114,12 @@ impl Effect {
         self
     }
 
-    /// The same effect, also on the image hook.
-    pub fn on_image<P: ImageEffect>(mut self) -> Self {
-        let finish = Arc::new(|pixel, picture: &Picture<'_>, words: &[u32]| {
-            P::finish(pixel, picture, &read(words))
-        });
-        self.hooks.image = Some(ImageHook {
-            reads_previous: P::READS_PREVIOUS,
-            finish,
-        });
-        self
-    }
-
     /// The same effect, also in passes over the finished picture.
     pub fn on_passes<P: PassEffect>(mut self) -> Self {
-        let named = |(index, &(name, scale)): (usize, &(&str, u32))| ImagePass {
-            name: name.into(),
-            scale,
-            kept: P::KEPT.and_then(|(kept, frames)| (kept == index).then_some(frames)),
-        };
-        self.hooks.passes = Some(PassHook {
-            passes: P::PASSES.iter().enumerate().map(named).collect(),
-            run: Arc::new(|index, at: &ImageAt<'_>, words: &[u32]| {
-                P::pass(index, at, &read(words))
-            }),
-        });
-        self
-    }
-
-    /// The same effect, with steps in its color: the judge then accepts either side of a step that
-    /// is very near.
-    pub fn in_steps(mut self) -> Self {
-        self.hooks.has_steps = true;
+        if let Some(hook) = &mut self.hooks.passes {
+            hook.run =
+                Arc::new(|index, at: &ImageAt<'_>, words: &[u32]| P::pass(index, at, &read(words)));
+        }
         self
     }
 
@@ -221,6 +192,11 @@ impl Effect {
         passes.is_some_and(|hook| hook.kept().is_some())
     }
 
+    /// Does it move with the clock?
+    pub fn is_given_time(&self) -> bool {
+        self.given.iter().any(|member| member.given.is_of_clock())
+    }
+
     /// Is it the effect of a file, or an instance of one?
     pub const fn is_of_file(&self) -> bool {
         self.source.is_some()
@@ -258,14 +234,20 @@ impl Effect {
             .map_or(&[], |source| source.images.as_slice())
     }
 
-    /// Every member of its struct of parameters, in order: its fields, and its pictures by number.
+    /// Every member of its struct of parameters, in order: its fields, its pictures by number, and
+    /// what it is given.
     pub fn members(&self) -> Vec<Arc<Field>> {
         let number = |image: &ImageInput| {
             let param = Param::new(&image.name, "", ValueType::U32);
             Arc::new(Field::new(param, WgslType::U32, image.offset))
         };
+        let given = |member: &GivenMember| {
+            let param = Param::new(&member.name, "", ValueType::U32);
+            Arc::new(Field::new(param, member.given.wgsl(), member.offset))
+        };
         let mut members = self.fields.clone();
         members.extend(self.images().iter().map(number));
+        members.extend(self.given.iter().map(given));
         members.sort_by_key(|member| member.offset);
         members
     }
@@ -364,6 +346,7 @@ pub struct HookFunctions {
 }
 
 /// Parameter words as the struct they were made from.
-pub fn read<P: Params>(words: &[u32]) -> P {
-    bytemuck::pod_read_unaligned(bytemuck::cast_slice(words))
+pub fn read<P: Words>(words: &[u32]) -> P {
+    // A struct of WGSL may end with room that the one in Rust does not have.
+    bytemuck::pod_read_unaligned(&bytemuck::cast_slice(words)[..size_of::<P>()])
 }

@@ -11,20 +11,16 @@ use super::{
 };
 use crate::{
     math::{SINE_ERROR, hash_unit, sin_turns},
-    params,
+    words,
 };
 
-params! {
-    pub struct Explode {
-        ..spread: Front = Front { width: 0.5, ..Front::default() }, always_shown "seed";
-        /// How far a triangle flies along its normal; negative: inwards.
-        amount_m: f32 = 0.3, hard -1e3..=1e3, soft -1.0..=2.0, unit "m";
-        /// How much the distances differ: at 0 all triangles move equally far, at 1 some do not move at all.
-        scatter: f32 = 0.0, hard 0.0..=1.0;
-        /// Turns that a triangle makes about its normal on its path.
-        spin_turns: f32 = 0.0, hard -100.0..=100.0, soft -1.0..=1.0, unit "turns";
-        /// Fraction of its size that a triangle loses on its path.
-        shrink: f32 = 0.0, hard 0.0..=1.0;
+words! {
+    pub struct Explode of "explode" {
+        amount_m: f32,
+        scatter: f32,
+        spin_turns: f32,
+        shrink: f32,
+        spread: Front,
     }
 }
 
@@ -33,11 +29,7 @@ params! {
 const SCATTER_SEED: u32 = 0x85eb_ca6b;
 
 pub static EFFECT: BuiltIn = BuiltIn::new(|| {
-    Effect::new::<Explode>(
-        "explode",
-        "Explode",
-        "triangles fly out along their own normals, turn and shrink",
-    )
+    Effect::declared::<Explode>()
     .on_vertex::<Explode>()
     .into()
 });

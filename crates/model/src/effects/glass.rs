@@ -12,29 +12,20 @@ use super::{
     BuiltIn, Effect, Surface, SurfaceInput,
     hooks::tone::rgb,
 };
-use crate::{params, params::Color};
+use crate::words;
 
-params! {
-    pub struct Glass {
-        /// Fraction of each channel that passes a pane of thickness 1 seen face on, linear.
-        tint: Color = [0.62, 0.86, 0.8, 1.0];
-        /// Color of the surroundings that are mirrored, linear.
-        mirrored: Color = [0.75, 0.83, 0.9, 1.0];
-        /// Thickness in panes; a slanted line of sight is longer inside the glass.
-        thickness: f32 = 1.0, hard 0.0..=100.0, soft 0.0..=5.0;
-        /// How strongly the surroundings are mirrored, by Fresnel's law of glass (Schlick 1994): 0 not at all.
-        fresnel: f32 = 1.0, hard 0.0..=1.0;
-        /// Fraction that the surface's own color covers, like dust or frost.
-        frost: f32 = 0.06, hard 0.0..=1.0;
+words! {
+    pub struct Glass of "glass" {
+        tint: [f32; 4],
+        mirrored: [f32; 4],
+        thickness: f32,
+        fresnel: f32,
+        frost: f32,
     }
 }
 
 pub static EFFECT: BuiltIn = BuiltIn::new(|| {
-    Effect::new::<Glass>(
-        "glass",
-        "Glass",
-        "tinted panes that mirror at a slant, composed in the order of depth",
-    )
+    Effect::declared::<Glass>()
     .with_glass()
     .reading(&[
         SurfaceInput::Color,

@@ -7,21 +7,16 @@ use super::{
     BuiltIn, Effect,
     hooks::{ErrorBound, ROUNDING, Vertex, VertexEffect},
 };
-use crate::params;
+use crate::words;
 
-params! {
-    pub struct Inflate {
-        /// How far every vertex moves along its normal; negative: inwards.
-        amount_m: f32 = 0.05, hard -1e3..=1e3, soft -0.5..=0.5, unit "m";
+words! {
+    pub struct Inflate of "inflate" {
+        amount_m: f32,
     }
 }
 
 pub static EFFECT: BuiltIn = BuiltIn::new(|| {
-    Effect::new::<Inflate>(
-        "inflate",
-        "Inflate",
-        "moves every vertex along its own normal: the model swells or shrinks",
-    )
+    Effect::declared::<Inflate>()
     .on_vertex::<Inflate>()
     .into()
 });

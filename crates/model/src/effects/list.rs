@@ -1,22 +1,110 @@
 //! The list of effects.
 
-use std::sync::{Arc, LazyLock};
+use std::{
+    collections::BTreeSet,
+    sync::{Arc, LazyLock},
+};
 
-use super::effect::Effect;
+use super::{effect::Effect, hooks::Slot, text::built_in};
+use crate::shaders::Library;
 
-macro_rules! list {
+/// The canonical order: that in which a preset without a `stack` setting applies effects. A file of
+/// `shaders/effects` that does not stand here comes after all of them, by name.
+const ORDER: [&str; 48] = [
+    "boxes",
+    "points",
+    "draw_order",
+    "particles",
+    "explode",
+    "inflate",
+    "wobble",
+    "psx",
+    "dissolve",
+    "stipple",
+    "facet",
+    "triangle_id",
+    "normals",
+    "depth",
+    "matcap",
+    "lambert",
+    "studio",
+    "shadow",
+    "toon",
+    "hatch",
+    "wireframe",
+    "fog",
+    "tonemap",
+    "glass",
+    "xray",
+    "overdraw",
+    "race",
+    "dots",
+    "posterize",
+    "smear",
+    "outline",
+    "dither",
+    "sky",
+    "ambient",
+    "sharpen",
+    "paint",
+    "depth_of_field",
+    "blur",
+    "bloom",
+    "glow_edges",
+    "halftone",
+    "pixelate",
+    "palette",
+    "aberration",
+    "grain",
+    "vignette",
+    "glitch",
+    "crt",
+];
+
+/// Every effect, in canonical order.
+pub static EFFECTS: LazyLock<Vec<Arc<Effect>>> = LazyLock::new(|| {
+    let files: BTreeSet<String> = Library::embedded()
+        .filter_map(|(name, _)| Some(name.strip_prefix("effects/")?.to_owned()))
+        .collect();
+    let others = files.iter().map(String::as_str);
+    let others = others.filter(|name| !ORDER.contains(name));
+    ORDER.into_iter().chain(others).map(effect).collect()
+});
+
+macro_rules! in_rust {
     ($($name:ident),* $(,)?) => {
-        /// Every effect, in the order in which a preset without a `stack` setting applies them.
-        pub static EFFECTS: LazyLock<Vec<Arc<Effect>>> = LazyLock::new(|| vec![$((*super::$name::EFFECT).clone()),*]);
+        /// The effect that the module of this name makes.
+        fn in_rust(name: &str) -> Option<Arc<Effect>> {
+            match name {
+                $(stringify!($name) => Some((*super::$name::EFFECT).clone()),)*
+                _ => None,
+            }
+        }
     };
 }
 
-for_each_effect!(list);
+for_each_in_rust!(in_rust);
+
+fn effect(name: &str) -> Arc<Effect> {
+    in_rust(name).unwrap_or_else(|| {
+        let read = built_in(name).unwrap_or_else(|error| panic!("{error}"));
+        Arc::new(match name {
+            "boxes" => read.in_slot(Slot::Coverage),
+            "race" => read.in_slot(Slot::Visibility).repeatable_if(|_| false),
+            _ => read,
+        })
+    })
+}
 
 impl Effect {
     /// The effect called `name`.
     pub fn find(name: &str) -> Option<&'static Arc<Self>> {
         EFFECTS.iter().find(|effect| effect.name == name)
+    }
+
+    /// The built-in effect called `name`, which there must be.
+    pub fn named(name: &str) -> &'static Arc<Self> {
+        Self::find(name).unwrap_or_else(|| panic!("{name} is built in"))
     }
 
     /// Index in [`EFFECTS`]; an effect of a file comes after all of them.

@@ -1,13 +1,11 @@
-//! Effects: pure functions with parameters, written twice. Here in f64, the reference; in
-//! `shaders/effects/` in f32, in a file of the same name. Panel, preset settings, `--set`, uniform
-//! bytes, layout test, golden and bench row are loops over [`EFFECTS`].
+//! Effects: pure functions with parameters. Each is a file in `shaders/effects`: kernels run it in
+//! f32, and the reference is the same [text](mod@text) in f64, unless a module here is. Panel, preset
+//! settings, `--set`, uniform bytes, layout test, golden and bench row are loops over [`EFFECTS`].
 
-/// THE list. Adding an effect is its two files and one word here, at its place in the canonical
-/// order.
-macro_rules! for_each_effect {
+/// The effects that have a side in Rust.
+macro_rules! for_each_in_rust {
     ($callback:ident) => {
         $callback![
-            boxes,
             points,
             draw_order,
             particles,
@@ -16,45 +14,18 @@ macro_rules! for_each_effect {
             wobble,
             psx,
             dissolve,
-            stipple,
-            facet,
-            triangle_id,
-            normals,
-            depth,
-            matcap,
-            lambert,
             studio,
             shadow,
-            toon,
-            hatch,
             wireframe,
-            fog,
-            tonemap,
             glass,
             xray,
             overdraw,
-            race,
             dots,
-            posterize,
-            smear,
-            outline,
-            dither,
             sky,
             ambient,
-            sharpen,
             paint,
             depth_of_field,
             blur,
-            bloom,
-            glow_edges,
-            halftone,
-            pixelate,
-            palette,
-            aberration,
-            grain,
-            vignette,
-            glitch,
-            crt,
         ];
     };
 }
@@ -63,15 +34,18 @@ macro_rules! modules {
     ($($name:ident),* $(,)?) => { $(pub mod $name;)* };
 }
 
-for_each_effect!(modules);
+for_each_in_rust!(modules);
 
 mod conflict;
 mod effect;
+pub mod given;
 pub mod hooks;
 pub mod image_file;
 mod list;
 mod one_sun;
 mod stack;
+pub mod text;
+mod words;
 
 pub use self::{
     conflict::Conflict,
@@ -79,4 +53,5 @@ pub use self::{
     hooks::{Surface, SurfaceEffect, SurfaceInput},
     list::EFFECTS,
     stack::{EnabledEffect, MAX_IMAGE_PASSES, Stack},
+    words::Words,
 };

@@ -4,7 +4,7 @@ use glam::Vec4;
 
 use super::{
     effect::read,
-    lambert, shadow,
+    shadow,
     stack::{EnabledEffect, Stack},
     studio,
 };
@@ -48,19 +48,24 @@ impl Stack {
             self.0[shadow_at].put(&shadow);
             return self;
         }
-        let Some(sun_at) = at(&self, &lambert::EFFECT.name) else {
+        let Some(sun_at) = at(&self, "lambert") else {
             return self;
         };
-        let mut sun: lambert::Lambert = read(&self.0[sun_at].words);
-        shadow.face(&mut sun.sun_direction);
+        let sun = &self.0[sun_at];
+        let color = |name: &str| -> [f32; 4] {
+            let numbers = sun.numbers(name);
+            std::array::from_fn(|at| numbers.get(at).map_or(0.0, |number| *number as f32))
+        };
+        shadow.face(&mut color("sun_direction"));
         if shadow::Shading::of(shadow.shading) == shadow::Shading::Dim {
             self.0[shadow_at].put(&shadow);
             return self;
         }
         // A surface that faces the eye has half of it, as from all sides.
-        let headlight = Vec4::new(0.5, 0.5, 0.5, 0.0) * sun.headlight;
+        let headlight = Vec4::new(0.5, 0.5, 0.5, 0.0) * sun.number("headlight") as f32;
         let lit = |color: [f32; 4]| (Vec4::from(color) + headlight).min(Vec4::ONE).to_array();
-        (shadow.light, shadow.sky, shadow.ground) = (sun.sun, lit(sun.sky), lit(sun.ground));
+        (shadow.light, shadow.sky, shadow.ground) =
+            (color("sun"), lit(color("sky")), lit(color("ground")));
         let mut one = self.0[shadow_at].clone();
         one.put(&shadow);
         // What stands between them, such as Toon, sees lit colors as without the shadow.
@@ -76,8 +81,8 @@ mod tests {
 
     use super::{
         super::{
+            Effect,
             hooks::{Lighting, Surface},
-            lambert::Lambert,
             shadow::Shadow,
             studio::Studio,
         },
@@ -86,7 +91,7 @@ mod tests {
 
     fn both() -> Stack {
         let mut stack = Stack::default();
-        stack.enable(&lambert::EFFECT);
+        stack.enable(Effect::named("lambert"));
         stack.enable(&shadow::EFFECT);
         stack
     }
@@ -95,9 +100,10 @@ mod tests {
     fn lambert_and_shadow_are_one_light_with_the_direction_and_colors_of_lambert() {
         let drawn = both().drawn(1.0);
         assert_eq!(drawn.0.len(), 1);
-        let (shadow, sun) = (drawn.light().expect("a light"), Lambert::default());
-        assert_eq!(shadow.light, sun.sun);
-        let toward = DVec3::from([0, 1, 2].map(|axis| f64::from(sun.sun_direction[axis])));
+        let shadow = drawn.light().expect("a light");
+        let sun = EnabledEffect::new(Effect::named("lambert"));
+        assert_eq!(shadow.light.map(f64::from).to_vec(), sun.numbers("sun"));
+        let toward = DVec3::from_slice(&sun.numbers("sun_direction"));
         assert!(shadow.toward().dot(toward.normalize()) > 0.999_999);
         assert_eq!(drawn.drawn(1.0), drawn, "again it is the same");
     }

@@ -3,15 +3,15 @@
 use glam::DVec3;
 
 use super::{BuiltIn, Effect, hooks::Slot};
-use crate::{choice, params};
+use crate::{choice, words};
 
 choice! {
     /// How layers become heat.
     pub enum Scale {
         /// Every layer is one equal step.
-        Linear = "linear",
+        Linear,
         /// Every doubling is one equal step.
-        Log = "log",
+        Log,
     }
 }
 
@@ -19,31 +19,24 @@ choice! {
     /// The colors of heat.
     pub enum Palette {
         /// Night blue, magenta, orange, pale yellow.
-        Ember = "ember",
+        Ember,
         /// Deep violet, teal, green, yellow.
-        Reef = "reef",
+        Reef,
         /// Black to white.
-        Grey = "grey",
+        Grey,
     }
 }
 
-params! {
-    pub struct Overdraw {
-        /// Layers at full heat; more look the same.
-        max_layers: u32 = 12, hard 1.0..=1e9, soft 1.0..=100.0, log true;
-        /// How layers become heat.
-        scale: Scale = Scale::Linear as u32;
-        /// The colors of heat.
-        palette: Palette = Palette::Ember as u32;
+words! {
+    pub struct Overdraw of "overdraw" {
+        max_layers: u32,
+        scale: u32,
+        palette: u32,
     }
 }
 
 pub static EFFECT: BuiltIn = BuiltIn::new(|| {
-    Effect::new::<Overdraw>(
-        "overdraw",
-        "Overdraw",
-        "paints how many layers each pixel has, as heat",
-    )
+    Effect::declared::<Overdraw>()
     .in_slot(Slot::Visibility)
     .into()
 });

@@ -10,33 +10,25 @@ use super::{
     BuiltIn, Effect,
     hooks::{ImageAt, PassEffect},
 };
-use crate::params;
+use crate::words;
 
-params! {
-    pub struct Paint {
-        /// Size of the brush.
-        radius_px: f32 = 4.0, hard 1.0..=24.0, soft 1.0..=10.0, unit "px";
-        /// How much longer strokes get along shapes.
-        stretch: f32 = 1.2, hard 0.0..=2.0;
-        /// How far the directions of strokes are smoothed.
-        smooth_px: f32 = 3.0, hard 0.0..=32.0, soft 0.0..=8.0, unit "px";
-        /// How sharply the edges of strokes are cut.
-        hardness: f32 = 1000.0, hard 0.0..=100000.0, soft 1.0..=10000.0, log true;
-        /// Strength of the colors: 1 as they are.
-        saturation: f32 = 1.15, hard 0.0..=4.0, soft 0.0..=2.0;
+words! {
+    pub struct Paint of "paint" {
+        radius_px: f32,
+        stretch: f32,
+        smooth_px: f32,
+        hardness: f32,
+        saturation: f32,
     }
 }
 
 pub static EFFECT: BuiltIn = BuiltIn::new(|| {
-    Effect::new::<Paint>("paint", "Paint", "brush strokes that follow the shapes")
+    Effect::declared::<Paint>()
         .on_passes::<Paint>()
         .into()
 });
 
 impl PassEffect for Paint {
-    const PASSES: &'static [(&'static str, u32)] =
-        &[("tensor", 1), ("across", 1), ("down", 1), ("stroke", 1)];
-
     fn pass(index: usize, at: &ImageAt, p: &Self) -> DVec4 {
         match index {
             0 => tensor(at),

@@ -37,71 +37,46 @@ use glam::DVec3;
 
 use super::{BuiltIn, Effect, read};
 use crate::{
-    params,
-    params::{Color, Field, Point},
+    params::Field,
+    words,
     scene::{
         Bounds,
         particle_discs::{ParticleSettings, ParticleTimeline},
     },
 };
 
-params! {
-    pub struct Particles {
-        /// Color of what hardly moves.
-        slow: Color = [0.02, 0.1, 0.65, 1.0];
-        /// Color of what is fast.
-        fast: Color = [1.0, 0.5, 0.12, 1.0];
-        /// Center of the particles.
-        center: Point = [0.0; 4], hard -1000.0..=1000.0, soft -3.0..=3.0, unit "m";
-        /// Half axes of the ellipsoid in which particles are born.
-        half_axes: Point = [1.0, 1.0, 1.0, 0.0], hard 0.0..=1000.0, soft 0.0..=3.0, unit "m";
-        /// The point that attracts particles; a drag over the picture with Ctrl moves it.
-        attractor: Point = [0.0; 4], hard -1000.0..=1000.0, soft -3.0..=3.0, unit "m";
-        /// How many there are.
-        count: u32 = 100000, hard 0.0..=4000000.0, soft 0.0..=200000.0;
-        /// Another seed gives another flow and other lives.
-        seed: u32 = 1, soft 0.0..=999.0;
-        /// Steps per second of the preset.
-        rate: u32 = 60, hard 1.0..=240.0, soft 24.0..=120.0, unit "/s";
-        /// Half the side of the bounds; a particle that would leave them is born again.
-        room_m: f32 = 2.5, hard 0.01..=1000.0, soft 0.5..=5.0, unit "m";
-        /// Longest life.
-        lifetime_s: f32 = 4.0, hard 0.01..=200.0, soft 0.25..=12.0, unit "s";
-        /// Random fraction of it.
-        lifetime_variation: f32 = 0.6, hard 0.0..=1.0;
-        /// Speed of the flow, about.
-        speed_mps: f32 = 0.6, hard 0.0..=100.0, soft 0.0..=3.0, unit "m/s";
-        /// Size of the largest swirls.
-        swirl_m: f32 = 0.9, hard 0.05..=1000.0, soft 0.1..=4.0, unit "m";
-        /// Layers of noise, each of half the size of the one before.
-        octaves: u32 = 3, hard 1.0..=6.0;
-        /// Speed of each layer as a fraction of that of the previous one.
-        persistence: f32 = 0.45, hard 0.0..=1.0;
-        /// How fast the flow itself changes.
-        evolve: f32 = 0.25, hard 0.0..=10.0, soft 0.0..=2.0, unit "/s";
-        /// How tightly the flow holds particles.
-        drag: f32 = 5.0, hard 0.0..=1000.0, soft 0.0..=20.0, unit "/s";
-        /// Largest acceleration towards the attractor; below 0 away from it.
-        attraction: f32 = 0.0, hard -1000.0..=1000.0, soft -20.0..=20.0, unit "m/s²";
-        /// Distance from the attractor at which it draws most.
-        attractor_m: f32 = 0.5, hard 0.01..=1000.0, soft 0.05..=2.0, unit "m";
-        /// How long the attraction takes to follow its point.
-        attractor_lag_s: f32 = 0.15, hard 0.0..=60.0, soft 0.0..=1.0, unit "s";
-        /// Largest radius of a disc.
-        radius_m: f32 = 0.008, hard 0.0..=10.0, soft 0.001..=0.05, unit "m";
-        /// Random fraction of it.
-        radius_variation: f32 = 0.5, hard 0.0..=1.0;
-        /// Fraction of its life in which a disc grows, and in which it shrinks.
-        fade: f32 = 0.3, hard 0.001..=0.5;
-        /// How far the rim of a disc turns from the viewer: 0 flat, 1 by 35 degrees.
-        roundness: f32 = 1.0, hard 0.0..=1.0;
-        /// Speed of the fast color.
-        fast_mps: f32 = 0.9, hard 0.001..=1000.0, soft 0.05..=4.0, unit "m/s";
+words! {
+    pub struct Particles of "particles" {
+        slow: [f32; 4],
+        fast: [f32; 4],
+        center: [f32; 4],
+        half_axes: [f32; 4],
+        attractor: [f32; 4],
+        count: u32,
+        seed: u32,
+        rate: u32,
+        room_m: f32,
+        lifetime_s: f32,
+        lifetime_variation: f32,
+        speed_mps: f32,
+        swirl_m: f32,
+        octaves: u32,
+        persistence: f32,
+        evolve: f32,
+        drag: f32,
+        attraction: f32,
+        attractor_m: f32,
+        attractor_lag_s: f32,
+        radius_m: f32,
+        radius_variation: f32,
+        fade: f32,
+        roundness: f32,
+        fast_mps: f32,
     }
 }
 
 pub static EFFECT: BuiltIn = BuiltIn::new(|| {
-    Effect::new::<Particles>("particles", "Particles", "adds drifting discs to the scene")
+    Effect::declared::<Particles>()
         .with_particles(|words| particle_settings(&read(words)))
         .into()
 });

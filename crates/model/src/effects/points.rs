@@ -4,21 +4,16 @@
 //! at most the squared radius. Corners of triangles that would have to be clipped are not drawn.
 
 use super::{BuiltIn, Effect, hooks::Slot};
-use crate::params;
+use crate::words;
 
-params! {
-    pub struct Points {
-        /// Diameter of the discs.
-        size_px: f32 = 3.0, hard 0.0..=64.0, soft 0.5..=16.0, unit "px";
+words! {
+    pub struct Points of "points" {
+        size_px: f32,
     }
 }
 
 pub static EFFECT: BuiltIn = BuiltIn::new(|| {
-    Effect::new::<Points>(
-        "points",
-        "Points",
-        "draws the corners of triangles as discs",
-    )
+    Effect::declared::<Points>()
     .in_slot(Slot::Coverage)
     .into()
 });

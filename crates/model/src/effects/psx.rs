@@ -8,21 +8,16 @@ use super::{
     BuiltIn, Effect,
     hooks::{ErrorBound, Vertex, VertexEffect},
 };
-use crate::params;
+use crate::words;
 
-params! {
-    pub struct Psx {
-        /// Side of a cell.
-        cell_px: u32 = 4, hard 1.0..=256.0, soft 1.0..=16.0, unit "px";
+words! {
+    pub struct Psx of "psx" {
+        cell_px: u32,
     }
 }
 
 pub static EFFECT: BuiltIn = BuiltIn::new(|| {
-    Effect::new::<Psx>(
-        "psx",
-        "Psx",
-        "corners snap to a coarse grid of the picture, and tremble as they move",
-    )
+    Effect::declared::<Psx>()
     .on_vertex::<Psx>()
     .into()
 });

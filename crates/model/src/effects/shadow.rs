@@ -8,51 +8,37 @@
 use glam::DVec3;
 
 use super::{
-    BuiltIn, Effect, Surface, SurfaceEffect, SurfaceInput,
+    BuiltIn, Effect, Surface, SurfaceEffect,
     hooks::tone::{rgb, turned},
 };
-use crate::{choice, params, params::Color};
+use crate::{choice, words};
 
 choice! {
     /// What the light does.
     pub enum Shading {
         /// It shines on a matt surface (Lambert), with light from above and below where it does not arrive.
-        Lambert = "lambert",
+        Lambert,
         /// It only dims what earlier effects have shaded.
-        Dim = "dim",
+        Dim,
     }
 }
 
-params! {
-    pub struct Shadow {
-        /// Color of the light, linear.
-        light: Color = [0.92, 0.84, 0.70, 1.0], when ("shading", &["lambert"]);
-        /// Light from straight above that nothing stops, linear.
-        sky: Color = [0.16, 0.19, 0.24, 1.0], when ("shading", &["lambert"]);
-        /// Light from straight below that nothing stops, linear.
-        ground: Color = [0.08, 0.065, 0.055, 1.0], when ("shading", &["lambert"]);
-        /// Where the light comes from: 0 in front of the scene, 90 from its right.
-        azimuth_deg: f32 = 40.0, hard -36000.0..=36000.0, soft -180.0..=180.0, unit "°";
-        /// Elevation of the light: 90 straight above.
-        elevation_deg: f32 = 48.0, hard -90.0..=90.0, unit "°";
-        /// What the light does.
-        shading: Shading = Shading::Lambert as u32;
-        /// Fraction of the light that a shadow removes.
-        strength: f32 = 1.0, hard 0.0..=1.0;
-        /// How many texels a surface is moved towards the light before it is compared.
-        bias: f32 = 0.5, hard -64.0..=64.0, soft 0.0..=4.0;
-        /// The same for every unit of the tangent of the angle between the light and the surface's normal.
-        slope: f32 = 0.25, hard -64.0..=64.0, soft 0.0..=4.0;
+words! {
+    pub struct Shadow of "shadow" {
+        light: [f32; 4],
+        sky: [f32; 4],
+        ground: [f32; 4],
+        azimuth_deg: f32,
+        elevation_deg: f32,
+        shading: u32,
+        strength: f32,
+        bias: f32,
+        slope: f32,
     }
 }
 
 pub static EFFECT: BuiltIn = BuiltIn::new(|| {
-    Effect::surface::<Shadow>(
-        "shadow",
-        "Shadow",
-        "a directional light whose shadows the rasterizer draws itself",
-    )
-    .in_steps()
+    Effect::declared::<Shadow>().on_surface::<Shadow>()
     .with_shadows()
     .into()
 });
@@ -90,13 +76,6 @@ impl Shadow {
 }
 
 impl SurfaceEffect for Shadow {
-    const INPUTS: &[SurfaceInput] = &[
-        SurfaceInput::Normal,
-        SurfaceInput::Lit,
-        SurfaceInput::Color,
-        SurfaceInput::Glow,
-    ];
-
     fn apply(mut s: Surface, p: &Self) -> Surface {
         let facing = s.normal.dot(p.toward()).max(0.0);
         let arrives = 1.0 - f64::from(p.strength) * (1.0 - s.lit);

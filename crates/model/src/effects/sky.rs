@@ -12,27 +12,19 @@ use super::{
         tone::turned,
     },
 };
-use crate::params;
+use crate::words;
 
-params! {
-    pub struct Sky {
-        /// What surrounds the scene.
-        environment: Environment = Environment::Studio as u32;
-        /// Turns it about the vertical axis.
-        turn_deg: f32 = 0.0, hard -36000.0..=36000.0, soft -180.0..=180.0, unit "°";
-        /// Strength of its light.
-        strength: f32 = 1.0, hard 0.0..=1000.0, soft 0.0..=4.0;
-        /// How blurred it is: 0 not at all, 1 as a matt mirror shows it.
-        blur: f32 = 0.3, hard 0.0..=1.0;
+words! {
+    pub struct Sky of "sky" {
+        environment: u32,
+        turn_deg: f32,
+        strength: f32,
+        blur: f32,
     }
 }
 
 pub static EFFECT: BuiltIn = BuiltIn::new(|| {
-    Effect::new::<Sky>(
-        "sky",
-        "Sky",
-        "what surrounds the scene is seen where nothing is drawn",
-    )
+    Effect::declared::<Sky>()
     .on_passes::<Sky>()
     .in_surroundings()
     .into()
@@ -42,8 +34,6 @@ pub static EFFECT: BuiltIn = BuiltIn::new(|| {
 const PLACE_ERROR: f64 = 1.0 / (1 << 20) as f64;
 
 impl PassEffect for Sky {
-    const PASSES: &'static [(&'static str, u32)] = &[("", 1)];
-
     fn pass(_: usize, at: &ImageAt, p: &Self) -> DVec4 {
         let (triangle_id, ..) = at.input.picture.at(at.x, at.y);
         if triangle_id.is_some() {

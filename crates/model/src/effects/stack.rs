@@ -6,12 +6,13 @@ use super::{
     conflict::Conflict,
     dots, draw_order,
     effect::{Effect, read},
+    given::Given,
     glass::GlassDraws,
     hooks::{self, EarlierFrames, Hooks, Layers, Lighting, Picture, Pixel, Shape, Slot, Surface},
-    points, race, shadow, smear, xray,
+    points, shadow, xray,
 };
 use crate::{
-    params::Params,
+    effects::Words,
     scene::{
         Scene,
         draw::{Draw, DrawError, scoped_draws},
@@ -25,6 +26,9 @@ use crate::{
 
 /// Most passes over the finished picture that the effects of a stack have together.
 pub const MAX_IMAGE_PASSES: usize = 32;
+
+/// The effect that remembers previous pictures.
+const SMEAR: &str = "smear";
 
 /// An effect with its values.
 #[derive(Clone, Debug, PartialEq)]
@@ -45,9 +49,32 @@ impl EnabledEffect {
         }
     }
 
+    /// The components of the parameter called `name`, which it must have.
+    pub fn numbers(&self, name: &str) -> Vec<f64> {
+        self.effect
+            .field(name)
+            .map_or_else(Vec::new, |field| field.get(&self.words))
+    }
+
+    /// The same of a parameter with one.
+    pub fn number(&self, name: &str) -> f64 {
+        self.numbers(name).first().copied().unwrap_or_default()
+    }
+
+    /// Gives a parameter that it must have these components, where they are allowed.
+    pub fn set(&mut self, name: &str, components: &[f64]) -> &mut Self {
+        let set = self
+            .effect
+            .field(name)
+            .map(|field| field.set(&mut self.words, components));
+        debug_assert!(matches!(set, Some(Ok(()))), "{name}: {set:?}");
+        self
+    }
+
     /// Gives it these values; `P` must be the effect's own.
-    pub fn put<P: Params>(&mut self, values: &P) {
-        self.words = bytemuck::cast_slice(std::slice::from_ref(values)).to_vec();
+    pub fn put<P: Words>(&mut self, values: &P) {
+        let words = bytemuck::cast_slice(std::slice::from_ref(values));
+        self.words[..words.len()].copy_from_slice(words);
     }
 }
 
@@ -82,6 +109,22 @@ impl Stack {
             }
         };
         &mut self.0[at]
+    }
+
+    /// The stack with the words of what its effects are given, where `words` has any.
+    #[must_use]
+    pub fn with_given(mut self, words: impl Fn(Given) -> Option<Vec<u32>>) -> Self {
+        for EnabledEffect {
+            effect, words: own, ..
+        } in &mut self.0
+        {
+            for member in &effect.given {
+                if let Some(words) = words(member.given) {
+                    own[member.offset / 4..][..words.len()].copy_from_slice(&words);
+                }
+            }
+        }
+        self
     }
 
     /// The stack for a picture of `factor` times as many pixels to a side: lengths in pixels scale
@@ -256,9 +299,9 @@ impl Stack {
 
     /// The earlier frames that a picture follows, if an effect remembers them.
     pub fn earlier_frames(&self) -> Option<EarlierFrames> {
-        let smeared = self.smear().map(|smear| EarlierFrames {
-            frames: smear.frames,
-            step_s: smear.step_s.into(),
+        let smeared = self.get(SMEAR).map(|smear| EarlierFrames {
+            frames: smear.number("frames") as u32,
+            step_s: smear.number("step_s"),
         });
         smeared.or_else(|| Some(self.kept()?.hooks.passes.as_ref()?.kept()?.1))
     }
@@ -398,18 +441,13 @@ impl Stack {
     }
 
     /// Parameters of the effect called `name`, if it is on; `P` must be its own.
-    pub fn params<P: Params>(&self, name: &str) -> Option<P> {
+    pub fn params<P: Words>(&self, name: &str) -> Option<P> {
         self.get(name).map(|enabled| read(&enabled.words))
     }
 
     /// The dots that are drawn along lines, if any are.
     pub fn dots(&self) -> Option<dots::Dots> {
         self.params(&dots::EFFECT.name)
-    }
-
-    /// The smear of previous pictures, if there is one.
-    pub fn smear(&self) -> Option<smear::Smear> {
-        self.params(&smear::EFFECT.name)
     }
 
     /// What becomes of the samples of a pixel in a scene of so many triangles; none: the nearest is
@@ -428,7 +466,7 @@ impl Stack {
 
     /// Is the race on, in which the triangles of a pixel lose samples?
     pub fn is_racing(&self) -> bool {
-        self.get(&race::EFFECT.name).is_some()
+        self.get("race").is_some()
     }
 
     /// Limits an effect to parts of the scene; enables it if it is off.
@@ -509,7 +547,7 @@ impl Stack {
             .0
             .iter()
             .map(|enabled| &enabled.effect)
-            .filter(|effect| effect.keeps_pass() || effect.name == smear::EFFECT.name);
+            .filter(|effect| effect.keeps_pass() || effect.name == SMEAR);
         if let (Some(first), Some(second)) = (remembering.next(), remembering.next()) {
             return Err(Conflict::EarlierFrames {
                 first: first.name.clone(),

@@ -10,7 +10,7 @@
 use glam::{DVec2, DVec3};
 
 use super::{
-    BuiltIn, Effect, Surface, SurfaceEffect, SurfaceInput,
+    BuiltIn, Effect, Surface, SurfaceEffect,
     hooks::{
         LitEffect, Lighting,
         environment::{Environment, Seen, turned_by},
@@ -18,8 +18,8 @@ use super::{
     },
 };
 use crate::{
-    choice, params,
-    params::{Color, Point},
+    choice,
+    words,
     scene::{panorama::Panorama, punctual::PlacedLight},
 };
 
@@ -27,59 +27,34 @@ choice! {
     /// Where metallic and roughness come from.
     pub enum MaterialSource {
         /// From the materials of the scene.
-        Scene = "scene",
+        Scene,
         /// From this effect, for every material that lights change.
-        Own = "own",
+        Own,
     }
 }
 
-params! {
-    pub struct Studio {
-        /// Color of the sun, linear.
-        sun: Color = [0.5, 0.47, 0.42, 1.0];
-        /// Direction towards the sun, of any length.
-        // Its fourth component is the fraction of the sun's light that a shadow removes. It is 0 until
-        // `Stack::drawn` joins this effect with Shadow.
-        sun_direction: Point = [0.55, 0.8, 0.6, 0.0], hard -1e3..=1e3, soft -1.0..=1.0;
-        /// What surrounds the scene and is reflected.
-        environment: Environment = Environment::Studio as u32;
-        /// Turns the environment about the vertical axis.
-        turn_deg: f32 = 0.0, hard -36000.0..=36000.0, soft -180.0..=180.0, unit "°";
-        /// Strength of the environment's light.
-        strength: f32 = 1.0, hard 0.0..=1000.0, soft 0.0..=4.0;
-        /// Where metallic and roughness come from.
-        material: MaterialSource = MaterialSource::Scene as u32;
-        /// 0: not a metal; 1: a metal, which reflects its base color.
-        metallic: f32 = 0.0, hard 0.0..=1.0, when ("material", &["own"]);
-        /// Perceptual roughness: 0 a mirror, 1 matt.
-        roughness: f32 = 0.4, hard 0.0..=1.0, when ("material", &["own"]);
-        /// Strength of the lights that come with the scene; they cast no shadows. 1: a white matt
-        /// surface shows lux divided by π, as in three.js; 0: they are off.
-        lights: f32 = 1.0, hard 0.0..=1000.0, soft 0.0..=4.0;
+words! {
+    pub struct Studio of "studio" {
+        sun: [f32; 4],
+        sun_direction: [f32; 4],
+        environment: u32,
+        turn_deg: f32,
+        strength: f32,
+        material: u32,
+        metallic: f32,
+        roughness: f32,
+        lights: f32,
     }
 }
 
 pub static EFFECT: BuiltIn = BuiltIn::new(|| {
-    Effect::surface::<Studio>(
-        "studio",
-        "Studio",
-        "metals, plastics and glazes under a sun and what surrounds them",
-    )
+    Effect::declared::<Studio>().on_surface::<Studio>()
     .in_light::<Studio>()
     .in_surroundings()
     .into()
 });
 
 impl SurfaceEffect for Studio {
-    const INPUTS: &[SurfaceInput] = &[
-        SurfaceInput::Normal,
-        SurfaceInput::View,
-        SurfaceInput::Lit,
-        SurfaceInput::Color,
-        SurfaceInput::Glow,
-        SurfaceInput::Finish,
-    ];
-
     fn apply(s: Surface, p: &Self) -> Surface {
         p.in_surroundings(s, None)
     }

@@ -5,42 +5,33 @@
 //! clipping added are not drawn.
 
 use super::{
-    BuiltIn, Effect, Surface, SurfaceEffect, SurfaceInput,
+    BuiltIn, Effect, 
     hooks::{Sample, SampleEffect, TriangleSetup},
 };
-use crate::{choice, params, params::Color};
+use crate::{choice, words};
 
 choice! {
     /// What becomes of lines behind faces.
     pub enum Hidden {
         /// Faces are empty, so lines behind them show.
-        Shown = "shown",
+        Shown,
         /// Faces are filled and hide them.
-        Removed = "removed",
+        Removed,
     }
 }
 
-params! {
-    pub struct Wireframe {
-        /// Color of the lines; alpha is its weight against the surface's color.
-        ink: Color = [0.9, 0.95, 1.0, 1.0];
-        /// Color of the faces; alpha is its weight against the surface's color.
-        paper: Color = [0.01, 0.012, 0.02, 1.0], when ("hidden", &["removed"]);
-        /// Width of the lines.
-        width_px: f32 = 1.5, hard 0.0..=256.0, soft 0.5..=8.0, unit "px";
-        /// What becomes of lines behind faces.
-        hidden: Hidden = Hidden::Removed as u32;
+words! {
+    pub struct Wireframe of "wireframe" {
+        ink: [f32; 4],
+        paper: [f32; 4],
+        width_px: f32,
+        hidden: u32,
     }
 }
 
 pub static EFFECT: BuiltIn = BuiltIn::new(|| {
-    Effect::new::<Wireframe>(
-        "wireframe",
-        "Wireframe",
-        "draws the edges of triangles at a constant width",
-    )
+    Effect::declared::<Wireframe>()
     .on_sample::<Wireframe>()
-    .on_surface::<Wireframe>()
     .into()
 });
 
@@ -64,26 +55,5 @@ impl SampleEffect for Wireframe {
 
     fn is_drawn(s: &Sample, p: &Self) -> bool {
         Hidden::of(p.hidden) == Hidden::Removed || (0..3).any(|k| s.areas[k] < s.setup[k])
-    }
-}
-
-impl SurfaceEffect for Wireframe {
-    const INPUTS: &[SurfaceInput] = &[SurfaceInput::EdgeDistance, SurfaceInput::Color];
-
-    fn apply(mut s: Surface, p: &Self) -> Surface {
-        let width = f64::from(p.width_px);
-        // Where the faces are drawn too, the line ends softly, over one pixel.
-        let line = match Hidden::of(p.hidden) {
-            Hidden::Shown => 1.0,
-            Hidden::Removed => {
-                (0.5 * width + 0.5 - s.edge_distance_px.min_element()).clamp(0.0, 1.0)
-            }
-        };
-        let (own, alpha) = (s.color.truncate(), s.color.w);
-        let tinted = |[red, green, blue, weight]: [f32; 4]| {
-            own.lerp([red, green, blue].map(f64::from).into(), weight.into())
-        };
-        s.color = tinted(p.paper).lerp(tinted(p.ink), line).extend(alpha);
-        s
     }
 }

@@ -13,31 +13,21 @@ use super::{
 };
 use crate::{
     math::{SINE_ERROR, cos_turns, sin_turns},
-    params,
-    params::Point,
+    words,
 };
 
-params! {
-    pub struct Wobble {
-        /// Direction in which the wave runs, of any length.
-        direction: Point = [0.0, 1.0, 0.0, 0.0], hard -1e3..=1e3, soft -1.0..=1.0;
-        /// Direction in which it sways the model, of any length.
-        sway: Point = [1.0, 0.0, 0.0, 0.0], hard -1e3..=1e3, soft -1.0..=1.0;
-        /// How far it sways to either side.
-        amplitude_m: f32 = 0.08, hard 0.0..=1e3, soft 0.0..=0.5, unit "m";
-        /// Distance from one crest to the next.
-        wavelength_m: f32 = 1.0, hard 0.001..=1e6, soft 0.05..=10.0, unit "m", log true;
-        /// How far the wave has run, turns of one wavelength; 1 is 0 again.
-        phase_turns: f32 = 0.0, hard 0.0..=1.0, unit "turns";
+words! {
+    pub struct Wobble of "wobble" {
+        direction: [f32; 4],
+        sway: [f32; 4],
+        amplitude_m: f32,
+        wavelength_m: f32,
+        phase_turns: f32,
     }
 }
 
 pub static EFFECT: BuiltIn = BuiltIn::new(|| {
-    Effect::new::<Wobble>(
-        "wobble",
-        "Wobble",
-        "a wave runs through the model and sways it",
-    )
+    Effect::declared::<Wobble>()
     .on_vertex::<Wobble>()
     .into()
 });

@@ -7,15 +7,15 @@
 use glam::{DVec3, DVec4};
 
 use super::{BuiltIn, Effect, Surface, SurfaceInput, hooks::Slot};
-use crate::{choice, params};
+use crate::{choice, words};
 
 choice! {
     /// Which layers count.
     pub enum Reach {
         /// All of them.
-        All = "all",
+        All,
         /// Those at most a window behind the front one.
-        Window = "window",
+        Window,
     }
 }
 
@@ -23,13 +23,13 @@ choice! {
     /// Which layers have more weight.
     pub enum Weighting {
         /// All layers alike.
-        Equal = "equal",
+        Equal,
         /// Those that face the eye.
-        Facing = "facing",
+        Facing,
         /// Those that are seen edge-on, as a thin shell under real x-rays.
-        Grazing = "grazing",
+        Grazing,
         /// Near ones.
-        Near = "near",
+        Near,
     }
 }
 
@@ -37,35 +37,26 @@ choice! {
     /// Bits per channel in the sums: the fewer, the more layers fit.
     pub enum Bits {
         /// As many as the scene's triangles leave room for, at least 12 to begin with.
-        Auto = "auto",
-        Sixteen = "16",
-        Twelve = "12",
-        Ten = "10",
-        Eight = "8",
+        Auto,
+        Sixteen,
+        Twelve,
+        Ten,
+        Eight,
     }
 }
 
-params! {
-    pub struct Xray {
-        /// Which layers count: all, or those within a window behind the front one.
-        layers: Reach = Reach::All as u32;
-        /// Depth of the window in thousandths: of the front's distance, or of the scene's depth where all rays are parallel.
-        window: u32 = 20, hard 0.0..=4000.0, soft 0.0..=400.0, unit "‰", when ("layers", &["window"]);
-        /// Which layers have more weight.
-        weight: Weighting = Weighting::Equal as u32;
-        /// Fraction of the light behind it that a layer of full weight stops; at 1 the background is hidden.
-        opacity: f32 = 1.0, hard 0.0..=1.0;
-        /// Bits per channel in the sums to begin with; fewer are taken where more layers must fit.
-        bits: Bits = Bits::Auto as u32;
+words! {
+    pub struct Xray of "xray" {
+        layers: u32,
+        window: u32,
+        weight: u32,
+        opacity: f32,
+        bits: u32,
     }
 }
 
 pub static EFFECT: BuiltIn = BuiltIn::new(|| {
-    Effect::new::<Xray>(
-        "xray",
-        "Xray",
-        "averages all layers of a pixel in whole numbers, so that no order shows",
-    )
+    Effect::declared::<Xray>()
     .in_slot(Slot::Visibility)
     .reading(&[
         SurfaceInput::Normal,

@@ -1,8 +1,7 @@
 //! Parameters: one registry entry for everything that a person can set.
 //!
 //! A [`Param`] says what a value is called, what it means, its type, its ranges and its unit.
-//! Effects declare theirs with [`params!`](crate::params!), which also lays the struct out as WGSL
-//! has it; settings of a preset and accuracy axes wrap the same type. Sliders, preset files,
+//! Effects declare theirs in their files; settings of a preset and accuracy axes wrap the same type. Sliders, preset files,
 //! `--set`, listings, the JSON schema and uniform bytes all read these entries.
 
 mod measure;
@@ -14,7 +13,7 @@ use std::{
     sync::Arc,
 };
 
-pub use crate::legible::{grouped, is_hidden, legible, legible_line, text_of};
+pub use crate::legible::{group_digits, is_hidden, legible, legible_line, text_of};
 pub use measure::Measure;
 pub use suggest::{did_you_mean, likeness, suggestion};
 pub use value::{Stored, Value, ValueError, ValueType, format_number};
@@ -171,17 +170,6 @@ pub struct Field {
     pub wgsl: WgslType,
     /// Byte offset in the struct, in Rust and in WGSL.
     pub offset: usize,
-    /// The member of the struct that holds it, where effects share a group of parameters.
-    pub group: Option<Group>,
-}
-
-/// A member of an effect's struct that is a struct itself: parameters that several effects share.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Group {
-    /// Name of the member, in Rust and in WGSL.
-    pub member: &'static str,
-    /// Name of its WGSL struct.
-    pub wgsl_struct: &'static str,
 }
 
 impl Deref for Field {
@@ -202,34 +190,7 @@ impl Field {
             },
             wgsl,
             offset,
-            group: None,
         }
-    }
-
-    /// An effect's own fields, then those of a group that its struct holds at its beginning. The
-    /// field `always_shown` of the group is always shown, although the group's declaration
-    /// makes it depend on a choice.
-    pub fn with_group(
-        mut own: Vec<Self>,
-        group: Group,
-        shared: Vec<Self>,
-        always_shown: &str,
-    ) -> Vec<Self> {
-        own.extend(shared.into_iter().map(|field| {
-            let when = field
-                .param
-                .when
-                .filter(|_| field.param.name != always_shown);
-            Self {
-                param: Param {
-                    when,
-                    ..field.param
-                },
-                group: Some(group),
-                ..field
-            }
-        }));
-        own
     }
 
     fn words_range(&self) -> std::ops::Range<usize> {
@@ -310,167 +271,4 @@ impl Field {
                 })
         })
     }
-}
-
-/// A type that can stand in a `params!` declaration.
-pub trait ParamType {
-    /// What the struct stores.
-    type Raw: bytemuck::Pod + PartialEq + std::fmt::Debug;
-    const WGSL: WgslType;
-
-    fn value_type() -> ValueType;
-}
-
-impl ParamType for f32 {
-    type Raw = f32;
-    const WGSL: WgslType = WgslType::F32;
-
-    fn value_type() -> ValueType {
-        ValueType::F32
-    }
-}
-
-impl ParamType for u32 {
-    type Raw = u32;
-    const WGSL: WgslType = WgslType::U32;
-
-    fn value_type() -> ValueType {
-        ValueType::U32
-    }
-}
-
-impl ParamType for i32 {
-    type Raw = i32;
-    const WGSL: WgslType = WgslType::I32;
-
-    fn value_type() -> ValueType {
-        ValueType::I32
-    }
-}
-
-/// An on/off parameter, stored as 0 or 1.
-pub enum Flag {}
-
-impl ParamType for Flag {
-    type Raw = u32;
-    const WGSL: WgslType = WgslType::U32;
-
-    fn value_type() -> ValueType {
-        ValueType::Bool
-    }
-}
-
-/// A linear RGBA parameter.
-pub enum Color {}
-
-impl ParamType for Color {
-    type Raw = [f32; 4];
-    const WGSL: WgslType = WgslType::Vec4F32;
-
-    fn value_type() -> ValueType {
-        ValueType::Color
-    }
-}
-
-/// A world-space point or direction; the fourth component is unused.
-pub enum Point {}
-
-impl ParamType for Point {
-    type Raw = [f32; 4];
-    const WGSL: WgslType = WgslType::Vec4F32;
-
-    fn value_type() -> ValueType {
-        ValueType::Point
-    }
-}
-
-/// A struct declared by [`params!`](crate::params!).
-pub trait Params: bytemuck::Pod + Default {
-    fn fields() -> Vec<Field>;
-}
-
-/// Declares a choice: an enum whose words stand in presets and, upper-cased, name WGSL constants.
-#[macro_export]
-macro_rules! choice {
-    ($(#[$meta:meta])* pub enum $name:ident { $($(#[$vmeta:meta])* $variant:ident = $word:literal),+ $(,)? }) => {
-        $(#[$meta])*
-        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-        #[repr(u32)]
-        pub enum $name { $($(#[$vmeta])* $variant),+ }
-
-        impl $name {
-            const ALL: &'static [Self] = &[$(Self::$variant),+];
-
-            /// The choice with this index; an index out of range, which no checked value has, gives the first.
-            pub fn of(index: u32) -> Self {
-                Self::ALL.get(index as usize).copied().unwrap_or(Self::ALL[0])
-            }
-        }
-
-        impl $crate::params::ParamType for $name {
-            type Raw = u32;
-            const WGSL: $crate::params::WgslType = $crate::params::WgslType::U32;
-
-            fn value_type() -> $crate::params::ValueType {
-                $crate::params::ValueType::choice(&[$($word),+])
-            }
-        }
-    };
-}
-
-/// Declares a parameter struct: a doc line, a type, a default and options per field. `..name: Type
-/// = default, always_shown "field";` at the beginning puts a group of parameters that several
-/// effects share into the struct.
-#[macro_export]
-macro_rules! params {
-    ($(#[$meta:meta])* pub struct $name:ident {
-        ..$group:ident : $group_ty:ty = $group_default:expr, always_shown $always:literal;
-        $($(#[doc = $doc:literal])+ $field:ident : $ty:ty = $default:expr $(, $key:ident $value:expr)*;)*
-    }) => {
-        $(#[$meta])*
-        #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
-        #[repr(C)]
-        pub struct $name { pub $group: $group_ty, $($(#[doc = $doc])+ pub $field: <$ty as $crate::params::ParamType>::Raw,)* }
-
-        impl Default for $name {
-            fn default() -> Self {
-                Self { $group: $group_default, $($field: $default),* }
-            }
-        }
-
-        impl $crate::params::Params for $name {
-            fn fields() -> Vec<$crate::params::Field> {
-                let own = vec![$($crate::params!(@field $name $field, $ty, concat!($($doc),+) $(, $key $value)*)),*];
-                let group = $crate::params::Group { member: stringify!($group), wgsl_struct: stringify!($group_ty) };
-                $crate::params::Field::with_group(own, group, <$group_ty as $crate::params::Params>::fields(), $always)
-            }
-        }
-    };
-    ($(#[$meta:meta])* pub struct $name:ident {
-        $($(#[doc = $doc:literal])+ $field:ident : $ty:ty = $default:expr $(, $key:ident $value:expr)*;)*
-    }) => {
-        $(#[$meta])*
-        #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
-        #[repr(C)]
-        pub struct $name { $($(#[doc = $doc])+ pub $field: <$ty as $crate::params::ParamType>::Raw,)* }
-
-        impl Default for $name {
-            fn default() -> Self {
-                Self { $($field: $default),* }
-            }
-        }
-
-        impl $crate::params::Params for $name {
-            fn fields() -> Vec<$crate::params::Field> {
-                vec![$($crate::params!(@field $name $field, $ty, concat!($($doc),+) $(, $key $value)*)),*]
-            }
-        }
-    };
-    (@field $name:ident $field:ident, $ty:ty, $doc:expr $(, $key:ident $value:expr)*) => {
-        $crate::params::Field::new(
-            $crate::params::Param::new(stringify!($field), $doc, <$ty as $crate::params::ParamType>::value_type())$(.$key($value))*,
-            <$ty as $crate::params::ParamType>::WGSL,
-            std::mem::offset_of!($name, $field),
-        )
-    };
 }

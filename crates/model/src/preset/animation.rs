@@ -378,7 +378,6 @@ impl Animation {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::effects::{facet, lambert};
 
     fn field<'a>(effect: &'a Effect, name: &str) -> &'a Arc<Field> {
         effect.field(name).expect("a field of the effect")
@@ -397,7 +396,12 @@ mod tests {
             .iter()
             .map(|&(time_s, value, easing)| key(time_s, value, easing))
             .collect();
-        Track::new(&facet::EFFECT, field(&facet::EFFECT, "amount"), keys).expect("sound keys")
+        Track::new(
+            Effect::named("facet"),
+            field(Effect::named("facet"), "amount"),
+            keys,
+        )
+        .expect("sound keys")
     }
 
     #[test]
@@ -435,15 +439,19 @@ mod tests {
     #[test]
     fn values_without_fractions_hold() {
         let keys = vec![key(0.0, 3.0, Easing::Hold), key(1.0, 9.0, Easing::Hold)];
-        let track = Track::new(&facet::EFFECT, field(&facet::EFFECT, "seed"), keys.clone())
-            .expect("sound keys");
+        let track = Track::new(
+            Effect::named("facet"),
+            field(Effect::named("facet"), "seed"),
+            keys.clone(),
+        )
+        .expect("sound keys");
         assert_eq!(
             (track.value_at(0.999), track.value_at(1.0)),
             (vec![3.0], vec![9.0])
         );
         let smooth = Track::new(
-            &facet::EFFECT,
-            field(&facet::EFFECT, "seed"),
+            Effect::named("facet"),
+            field(Effect::named("facet"), "seed"),
             vec![key(0.0, 3.0, Easing::Smooth)],
         );
         assert_eq!(smooth, Err(KeyframeError::Steps("smooth")));
@@ -451,7 +459,13 @@ mod tests {
 
     #[test]
     fn what_no_file_could_say_no_track_holds() {
-        let new = |keys| Track::new(&facet::EFFECT, field(&facet::EFFECT, "amount"), keys);
+        let new = |keys| {
+            Track::new(
+                Effect::named("facet"),
+                field(Effect::named("facet"), "amount"),
+                keys,
+            )
+        };
         assert_eq!(new(vec![]), Err(KeyframeError::Count(0)));
         let many = (0..=MAX_KEYFRAMES as u32)
             .map(|i| key(i.into(), 0.0, Easing::Linear))
@@ -486,7 +500,8 @@ mod tests {
 
     #[test]
     fn all_lanes_move_together_and_other_fields_stay() {
-        let sun = field(&lambert::EFFECT, "sun");
+        let lambert = Effect::named("lambert");
+        let sun = field(lambert, "sun");
         let keys = [
             (0.0, vec![0.0, 0.5, 1.0, 1.0]),
             (2.0, vec![1.0, 0.5, 0.0, 1.0]),
@@ -498,17 +513,12 @@ mod tests {
                 easing: Easing::Linear,
             })
             .to_vec();
-        let animation = Animation(vec![
-            Track::new(&lambert::EFFECT, sun, keys).expect("sound keys"),
-        ]);
+        let animation = Animation(vec![Track::new(lambert, sun, keys).expect("sound keys")]);
         let mut stack = Stack::default();
-        stack.enable(&lambert::EFFECT);
+        stack.enable(lambert);
         let posed = animation.evaluate(&stack, 0.5);
         assert_eq!(sun.get(&posed.0[0].words), [0.25, 0.5, 0.75, 1.0]);
-        let untouched = lambert::EFFECT
-            .fields
-            .iter()
-            .filter(|field| field.name != "sun");
+        let untouched = lambert.fields.iter().filter(|field| field.name != "sun");
         untouched.for_each(|field| {
             assert!(
                 field.same(&posed.0[0].words, &stack.0[0].words),

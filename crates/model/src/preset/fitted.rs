@@ -9,7 +9,7 @@ use super::{
     setting::Storage,
 };
 use crate::{
-    effects::{EnabledEffect, depth, read},
+    effects::{Effect, EnabledEffect},
     params::{Field, Measure, Value, ValueType, format_number},
     scene::Scene,
 };
@@ -61,11 +61,9 @@ impl Preset {
         if let Some([offset, per]) = fit.depth_line() {
             for enabled in &mut fitted.stack.0 {
                 let original = enabled.effect.base.as_ref().unwrap_or(&enabled.effect);
-                if **original == **depth::EFFECT {
-                    let mut depth: depth::Depth = read(&enabled.words);
-                    depth.offset = (f64::from(depth.offset) + f64::from(depth.scale) / per * offset)
-                        .clamp(-1e6, 1e6) as f32;
-                    enabled.put(&depth);
+                if original == Effect::named("depth") {
+                    let moved = enabled.number("offset") + enabled.number("scale") / per * offset;
+                    enabled.set("offset", &[moved.clamp(-1e6, 1e6)]);
                 }
             }
         }

@@ -4,6 +4,7 @@
 //! the stack itself: keyframes change its values with the time.
 
 pub mod animation;
+mod backdrop;
 mod bookmark;
 mod fit;
 mod fitted;
@@ -26,15 +27,15 @@ use glam::{DMat4, DVec3};
 
 use crate::{
     effects::{
-        Stack, read,
-        tonemap::{self, Tonemap},
+        EnabledEffect, Stack,
+        given::{Moment, words_of_view},
     },
     math::{rotation_y, turned_about},
     scene::{
-        Background, Bounds, Ground, Scene,
+        Bounds, Ground, Scene,
         camera::Camera,
         needs,
-        parts::{Scope, ShownParts},
+        parts::ShownParts,
         pose::{Motion, Pose, scene_from_nodes},
         punctual::{PlacedLight, SceneLight},
         shadow_resolution::ShadowResolution,
@@ -182,26 +183,6 @@ impl Clock {
     }
 }
 
-impl Preset {
-    /// What pixels without a triangle show: the background of the output, through the tone mapping
-    /// that asks for it.
-    pub fn backdrop(&self) -> Background {
-        let mut backdrop = self.output.backdrop();
-        for enabled in &self.evaluated_stack().0 {
-            let original = enabled.effect.base.as_ref().unwrap_or(&enabled.effect);
-            if *original != *tonemap::EFFECT || enabled.on != Scope::default() {
-                continue;
-            }
-            let tonemap: Tonemap = read(&enabled.words);
-            if tonemap.background != 0 {
-                [backdrop.top, backdrop.bottom] =
-                    [backdrop.top, backdrop.bottom].map(|color| tonemap.shown_color(color));
-            }
-        }
-        backdrop
-    }
-}
-
 /// The state of a preset.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Preset {
@@ -295,10 +276,12 @@ impl Preset {
 
     /// The stack at the time of the clock for a picture of `scene` of this size, with lengths in
     /// meters and in its pixels, which is drawn.
-    pub fn stack_on(&self, scene: &Scene, [_, height]: [u32; 2]) -> Stack {
-        self.in_meters(scene)
+    pub fn stack_on(&self, scene: &Scene, size: [u32; 2]) -> Stack {
+        let preset = self.in_meters(scene);
+        let stack = preset
             .evaluated_stack()
-            .drawn(self.output.length_scale(height.into()))
+            .drawn(self.output.length_scale(size[1].into()));
+        preset.stack_in_view(stack, scene, size)
     }
 
     /// The preset as a picture of `scene` of this height draws it: with its values at its time, in
@@ -312,7 +295,25 @@ impl Preset {
 
     /// The stack at another time.
     pub fn stack_at(&self, time_s: f64) -> Stack {
-        self.animation.evaluate(&self.stack, time_s)
+        let moment = Moment {
+            time_s,
+            range_s: self.clock.range_s,
+        };
+        let stack = self.animation.evaluate(&self.stack, time_s);
+        stack.with_given(|given| moment.words(given))
+    }
+
+    /// `stack` for a picture of `scene` of this size.
+    fn stack_in_view(&self, stack: Stack, scene: &Scene, size: [u32; 2]) -> Stack {
+        if stack
+            .0
+            .iter()
+            .all(|enabled| enabled.effect.given.is_empty())
+        {
+            return stack;
+        }
+        let view = self.view(scene, size);
+        stack.with_given(|given| words_of_view(given, size, view.eye, view.forward))
     }
 
     /// The preset with its values at its time and without keyframes, except those that change the
@@ -333,7 +334,9 @@ impl Preset {
             .iter()
             .any(|t| t.keys().len() > 1 && self.stack.get(&t.effect().name).is_some());
         let has_particles = self.stack.particle_settings().is_some();
-        keyed || has_particles || self.spin_deg_per_s != 0.0 || self.playback.is_moving()
+        let is_given_time = |enabled: &EnabledEffect| enabled.effect.is_given_time();
+        let of_time = self.stack.0.iter().any(is_given_time);
+        keyed || has_particles || of_time || self.spin_deg_per_s != 0.0 || self.playback.is_moving()
     }
 
     /// Removes an effect and its keyframes.
@@ -443,7 +446,8 @@ impl Preset {
         if other.is_some() {
             points.extend(scene.framing_points(other).iter());
         }
-        if let Some(particle_settings) = self.stack_on(scene, [1, 1]).particle_settings() {
+        if let Some(particle_settings) = self.in_meters(scene).evaluated_stack().particle_settings()
+        {
             // Particles may fly far, but the scene is what is looked at.
             let mut near = Bounds::EMPTY;
             points.iter().for_each(|point| near.include(*point));

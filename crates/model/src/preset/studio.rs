@@ -4,7 +4,7 @@
 use super::{LengthUnit, Output, Preset, SceneSource};
 use crate::{
     accuracy::{PinnedOptions, ShadowMapSize, ShadowTaps},
-    effects::{Stack, fog::Fog, shadow::Shadow, studio::Studio, tonemap::Tonemap},
+    effects::{Effect, Stack, shadow::Shadow, studio::Studio},
     preset::AccuracyRequest,
     scene::{
         Ground,
@@ -46,7 +46,7 @@ impl Preset {
 }
 
 fn stack() -> Stack {
-    use crate::effects::{fog, shadow, studio, tonemap};
+    use crate::effects::{shadow, studio};
     let mut stack = Stack::default();
     stack.enable(&studio::EFFECT).put(&Studio {
         sun: [0.66, 0.635, 0.595, 1.0],
@@ -54,21 +54,17 @@ fn stack() -> Stack {
         strength: 0.72,
         ..Studio::default()
     });
-    stack.enable(&tonemap::EFFECT).put(&Tonemap {
-        background: 1,
-        ..Tonemap::default()
-    });
+    stack
+        .enable(Effect::named("tonemap"))
+        .set("background", &[1.0]);
     stack.enable(&shadow::EFFECT).put(&Shadow {
         strength: 0.85,
         ..Shadow::default()
     });
-    let fog = stack.enable(&fog::EFFECT);
-    fog.put(&Fog {
-        color: BACKDROP[0],
-        density: 0.22,
-        start_m: 2.6,
-        ..Fog::default()
-    });
+    let fog = stack.enable(Effect::named("fog"));
+    fog.set("color", &BACKDROP[0].map(f64::from))
+        .set("density", &[0.22])
+        .set("start_m", &[2.6]);
     fog.on = Scope::new([PartPattern::of_name(PartKind::Node, "ground")]);
     stack
 }

@@ -204,7 +204,7 @@ impl Preset {
 mod tests {
     use super::*;
     use crate::{
-        effects::{explode, facet, lambert, posterize},
+        effects::{Effect, explode},
         preset::LengthUnit,
         scene::builtin,
     };
@@ -251,11 +251,11 @@ mod tests {
         a.output.background = [0.0, 0.0, 0.0, 1.0];
         b.output.background = [1.0, 0.5, 0.0, 1.0];
         b.output.size = [64, 64];
-        a.stack.enable(&facet::EFFECT);
-        a.stack.enable(&lambert::EFFECT);
-        b.stack.enable(&facet::EFFECT);
-        b.stack.enable(&posterize::EFFECT);
-        let amount = facet::EFFECT.field("amount").expect("a parameter");
+        a.stack.enable(Effect::named("facet"));
+        a.stack.enable(Effect::named("lambert"));
+        b.stack.enable(Effect::named("facet"));
+        b.stack.enable(Effect::named("posterize"));
+        let amount = Effect::named("facet").field("amount").expect("a parameter");
         for (preset, value) in [(&mut a, 0.25), (&mut b, 0.75)] {
             let enabled = preset.stack.get_mut("facet").expect("it is enabled");
             amount.set(&mut enabled.words, &[value]).expect("in range");
@@ -278,10 +278,10 @@ mod tests {
     fn keys_lead_from_one_preset_to_the_other_in_its_clock() {
         let [mut a, mut b] = [Preset::default(), Preset::default()];
         b.clock.range_s = [1.0, 3.0];
-        let amount = facet::EFFECT.field("amount").expect("a parameter");
+        let amount = Effect::named("facet").field("amount").expect("a parameter");
         for (preset, value) in [(&mut a, 0.25), (&mut b, 0.75)] {
-            preset.stack.enable(&facet::EFFECT);
-            preset.stack.enable(&lambert::EFFECT);
+            preset.stack.enable(Effect::named("facet"));
+            preset.stack.enable(Effect::named("lambert"));
             let enabled = preset.stack.get_mut("facet").expect("it is enabled");
             amount.set(&mut enabled.words, &[value]).expect("in range");
         }

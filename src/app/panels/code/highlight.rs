@@ -1,6 +1,6 @@
 //! The colors of WGSL text.
 
-use eframe::egui::{Color32, FontId, TextFormat, text::LayoutJob};
+use egui::{Color32, FontId, TextFormat, text::LayoutJob};
 
 use crate::app::widgets::theme;
 

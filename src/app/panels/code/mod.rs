@@ -5,16 +5,15 @@ mod highlight;
 
 use std::path::{Path, PathBuf};
 
-use eframe::egui::{
-    self, Color32, Key, Modifiers, ScrollArea, TextEdit, TextStyle, Ui, pos2, vec2,
-};
+use egui::{self, Color32, Key, Modifiers, ScrollArea, TextEdit, TextStyle, Ui, pos2, vec2};
 
+use crate::app::panels::panel::Panel;
 use crate::{
     app::{
         shell::{command::Commands, state::State},
         widgets::{
             icons::{Icon, icon_button},
-            panel::{Panel, at_right},
+            panel::at_right,
             theme,
         },
     },

@@ -1,6 +1,6 @@
 //! The buttons of dialogs.
 
-use eframe::egui::{self, Ui, vec2};
+use egui::{self, Ui, vec2};
 
 use crate::app::{
     files::command::Side,

@@ -9,7 +9,7 @@ use std::{
     sync::Arc,
 };
 
-use eframe::egui::Ui;
+use egui::Ui;
 
 use self::{
     buttons::{Choice, buttons},
@@ -17,6 +17,7 @@ use self::{
     questions::{brought_ui, changed_ui, muted_ui, outside_ui, restore_ui, unsaved_ui},
 };
 use super::new_effect::{NewEffect, fields_ui};
+use crate::app::panels::panel::Panel;
 use crate::{
     app::{
         editing::new_effect::create,
@@ -35,7 +36,7 @@ use crate::{
         },
         settings::last_session::Restored,
         shell::{command::Commands, state::State},
-        widgets::panel::{Panel, modal},
+        widgets::panel::modal,
     },
     effect_files::Catalog,
     effects::Effect,

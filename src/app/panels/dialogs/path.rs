@@ -6,7 +6,7 @@ use std::{
     path::{Path, PathBuf, is_separator},
 };
 
-use eframe::egui::{
+use egui::{
     self, Align2, Key, Modifiers, RichText, Sense, Ui,
     text::{CCursor, CCursorRange},
     text_edit::TextEditState,
@@ -25,7 +25,7 @@ use crate::{
         },
         settings::recents::Recents,
         shell::command::Commands,
-        widgets::{size::size_ui, text::cut_middle, theme},
+        widgets::{form::is_entered, size::size_ui, text::cut_middle, theme},
     },
     preset_file::{MAX_NAME, ModelFormat},
 };
@@ -151,7 +151,7 @@ impl PathDialog {
     /// The file that the dialog names.
     pub fn path(&self) -> PathBuf {
         completion::with_extension(
-            &completion::expanded(self.text.trim()),
+            &completion::expand_home(self.text.trim()),
             self.purpose.extension(),
         )
     }
@@ -167,7 +167,7 @@ impl PathDialog {
         let path = self.path();
         if self.purpose != Purpose::Open {
             let is_unnamed =
-                completion::name_of(typed).is_empty() || completion::expanded(typed).is_dir();
+                completion::name_of(typed).is_empty() || completion::expand_home(typed).is_dir();
             if is_unnamed {
                 self.error = Some(format!(
                     "{typed} is a folder. Type a name for the file behind it."
@@ -298,37 +298,8 @@ pub fn path_ui(
     );
     ui.label(theme::weak(dialog.purpose.hint()));
     ui.add_space(theme::HALF);
-    let id = ui.scope_id().with("path");
     let rows = dialog.rows(recents);
-    let mut is_accepted = false;
-    if ui.memory(|memory| memory.has_focus(id)) {
-        keys(ui, dialog, &rows);
-    }
-    let before = dialog.text.clone();
-    // The field keeps Tab for completion.
-    let edit = egui::TextEdit::singleline(&mut dialog.text)
-        .id(id)
-        .hint_text("Path")
-        .desired_width(f32::INFINITY)
-        .lock_focus(true);
-    let field = ui.add(edit).accessible_name("Path");
-    if dialog.text != before {
-        (dialog.error, dialog.chosen) = (None, None);
-        begin_anew(ui.ctx(), id, dialog, &before);
-    }
-    let entered = field.lost_focus() && ui.input(|i| i.key_pressed(Key::Enter));
-    if !entered && ui.memory(|memory| memory.focused().is_none()) {
-        field.request_focus();
-    }
-    if std::mem::take(&mut dialog.places_cursor) {
-        place_cursor(ui.ctx(), id, dialog);
-    }
-    if entered {
-        is_accepted |= match dialog.chosen.and_then(|at| rows.get(at)) {
-            Some(row) => dialog.take(row),
-            None => !enter_folder(dialog),
-        };
-    }
+    let mut is_accepted = field_ui(ui, dialog, &rows);
     is_accepted |= list_ui(ui, dialog, &rows, missing);
     if dialog.purpose == Purpose::SaveAs {
         let mut name = dialog.preset_name();
@@ -387,11 +358,36 @@ pub fn path_ui(
                 .then_some(Choice::Browse)
         },
     );
-    if is_accepted {
-        Some(Choice::Accept)
-    } else {
-        choice
+    is_accepted.then_some(Choice::Accept).or(choice)
+}
+
+/// The field for the path. Returns true if what is entered in it is the answer.
+fn field_ui(ui: &mut Ui, dialog: &mut PathDialog, rows: &[Row]) -> bool {
+    let id = ui.scope_id().with("path");
+    if ui.memory(|memory| memory.has_focus(id)) {
+        keys(ui, dialog, rows);
     }
+    let before = dialog.text.clone();
+    // The field keeps Tab for completion.
+    let edit = egui::TextEdit::singleline(&mut dialog.text)
+        .id(id)
+        .hint_text("Path")
+        .desired_width(f32::INFINITY)
+        .lock_focus(true);
+    let field = ui.add(edit).accessible_name("Path");
+    if dialog.text != before {
+        (dialog.error, dialog.chosen) = (None, None);
+        begin_anew(ui.ctx(), id, dialog, &before);
+    }
+    let entered = is_entered(ui, &field);
+    if std::mem::take(&mut dialog.places_cursor) {
+        place_cursor(ui.ctx(), id, dialog);
+    }
+    entered
+        && match dialog.chosen.and_then(|at| rows.get(at)) {
+            Some(row) => dialog.take(row),
+            None => !enter_folder(dialog),
+        }
 }
 
 /// The first edit of a proposed path: an absolute path, or one of the home folder, in place of the
@@ -435,7 +431,7 @@ fn keys(ui: &Ui, dialog: &mut PathDialog, rows: &[Row]) {
                 listing.matches(&dialog.text, &system_dialog::extensions(dialog.purpose))
             })
             .collect();
-        match completion::completed(&dialog.text, &entries) {
+        match completion::complete_name(&dialog.text, &entries) {
             Some(completed) => dialog.set_text(completed),
             // Nothing to add: Tab goes on to the buttons.
             None if entries.len() < 2 => {
@@ -458,7 +454,7 @@ fn enter_folder(dialog: &mut PathDialog) -> bool {
     let typed = dialog.text.trim();
     let is_folder = !typed.is_empty()
         && !completion::name_of(typed).is_empty()
-        && completion::expanded(typed).is_dir();
+        && completion::expand_home(typed).is_dir();
     if is_folder {
         let text = format!("{typed}{}", std::path::MAIN_SEPARATOR);
         dialog.set_text(text);

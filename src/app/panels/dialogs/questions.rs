@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use eframe::egui::{RichText, Ui};
+use egui::{RichText, Ui};
 
 use super::buttons::{Choice, buttons};
 use crate::{

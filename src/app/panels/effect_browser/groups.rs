@@ -140,7 +140,7 @@ fn surface(index: f64, tone: f64) -> Surface {
 
 /// The effects that answer `search` and `is_kept`, in their groups. Within a group the best answers
 /// come first.
-pub fn grouped<'a>(
+pub fn group_effects<'a>(
     effects: &[&'a Arc<Effect>],
     search: &str,
     is_kept: impl Fn(&Effect) -> bool,
@@ -274,7 +274,7 @@ mod tests {
     fn search_finds_names_descriptions_and_groups() {
         let all: Vec<&'static Arc<Effect>> = EFFECTS.iter().collect();
         let names = |search: &str| -> Vec<&str> {
-            grouped(&all, search, |_| true)
+            group_effects(&all, search, |_| true)
                 .into_iter()
                 .flat_map(|(_, e)| e)
                 .map(|e| e.name.as_str())
@@ -291,7 +291,7 @@ mod tests {
         );
         assert!(names("vertex").contains(&"wobble") && names("ink").contains(&"hatch"));
         assert_eq!(names("").len(), EFFECTS.len());
-        let only = grouped(&all, "", |effect| effect.name == "fog");
+        let only = group_effects(&all, "", |effect| effect.name == "fog");
         assert_eq!(only, [(Group::Surface, vec![effect("fog")])]);
     }
 

@@ -7,13 +7,14 @@ use std::sync::{
     atomic::{AtomicBool, Ordering},
 };
 
-use eframe::egui::{self, ScrollArea, Ui};
+use egui::{self, ScrollArea, Ui};
 
-use self::groups::{Group, best, grouped};
+use self::groups::{Group, best, group_effects};
 use super::{
     inspector::effect_menu,
     preset_browser::thumbnails::{Size, Thumbnails},
 };
+use crate::app::panels::panel::Panel;
 use crate::{
     app::{
         editing::{session::Session, stack_drag::StackDrag},
@@ -29,12 +30,12 @@ use crate::{
         widgets::{
             form::{is_entered, search_ui},
             icons::star_toggle,
-            panel::{Panel, modal},
+            panel::modal,
             theme,
             tile::{Tile, Tiling},
         },
     },
-    effects::{Effect, lambert},
+    effects::Effect,
     preset::{AccuracyRequest, Preset},
     preset_file::{Folders, open},
     scene::Scene,
@@ -104,7 +105,7 @@ impl EffectBrowser {
             .cloned()
             .zip(session.preset_file.effects.find(&name).ok().flatten());
         let Some((scene, effect)) = found else {
-            self.pictures.arrived(ctx, &name, None);
+            self.pictures.take_picture(ctx, &name, None);
             return None;
         };
         self.cancelled = Arc::default();
@@ -132,7 +133,7 @@ impl EffectBrowser {
         if image.is_none() && self.cancelled.load(Ordering::Relaxed) {
             return self.pictures.abandoned(effect);
         }
-        self.pictures.arrived(ctx, effect, image);
+        self.pictures.take_picture(ctx, effect, image);
     }
 
     /// Shows the browser in its tab.
@@ -149,7 +150,7 @@ impl EffectBrowser {
         let is_kept = |effect: &Effect| {
             !self.only_favorites || state.files.favorites.has(Starred::Effect, &effect.name)
         };
-        let groups = grouped(&all_effects(state), &self.search, is_kept);
+        let groups = group_effects(&all_effects(state), &self.search, is_kept);
         ScrollArea::vertical()
             .id_salt("effects")
             .auto_shrink(false)
@@ -180,7 +181,7 @@ impl EffectBrowser {
             let field = search_ui(ui, &mut search, SEARCH);
             let is_entered = is_entered(ui, &field);
             ui.add_space(theme::HALF);
-            let groups = grouped(&all, &search, is_absent);
+            let groups = group_effects(&all, &search, is_absent);
             ScrollArea::vertical()
                 .id_salt("effects to add")
                 .auto_shrink([false, true])
@@ -366,7 +367,7 @@ fn sample(effect: &Arc<Effect>, session: &Session) -> Preset {
         None => {
             preset.stack = Default::default();
             if effect.hooks.surface.is_none() || effect.is_of_file() {
-                preset.stack.enable(&lambert::EFFECT);
+                preset.stack.enable(Effect::named("lambert"));
             }
             preset.stack.enable(effect);
         }

@@ -2,7 +2,7 @@
 //! judged to err by on the open picture, and below it, folded, the axes that the picture can use,
 //! each with the option that the planner took and why.
 
-use eframe::egui::{self, Align2, Color32, RichText, Sense, Ui, pos2, vec2};
+use egui::{self, Align2, Color32, RichText, Sense, Ui, pos2, vec2};
 
 use super::rows::{folder, setting_ui};
 use crate::{

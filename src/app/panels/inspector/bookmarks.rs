@@ -1,6 +1,6 @@
 //! The bookmarks of the preset: cameras under names.
 
-use eframe::egui::{self, Ui};
+use egui::{self, Ui};
 
 use crate::{
     app::{

@@ -1,7 +1,7 @@
 //! The folder of the clips: which clip of the scene plays, how fast, and which second one is
 //! blended in.
 
-use eframe::egui::{self, Ui};
+use egui::{self, Ui};
 
 use super::rows::{folder, setting_ui};
 use crate::{

@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use eframe::egui::{self, Rect, RichText, Sense, Ui, vec2};
+use egui::{self, Rect, RichText, Sense, Ui, vec2};
 
 use super::{
     effect_menu,

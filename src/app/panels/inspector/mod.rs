@@ -14,9 +14,10 @@ pub mod rows;
 mod scene;
 mod scope;
 
-use eframe::egui::{self, Ui};
+use egui::{self, Ui};
 
 use self::rows::{folder, lead_to, setting_ui, settings_folder};
+use crate::app::panels::panel::Panel;
 use crate::{
     app::{
         shell::{
@@ -24,7 +25,7 @@ use crate::{
             command::{Commands, Edit},
             state::State,
         },
-        widgets::{panel::Panel, theme},
+        widgets::theme,
     },
     preset::settings::CAMERA,
 };

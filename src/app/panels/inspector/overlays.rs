@@ -1,11 +1,11 @@
 //! The folder of the overlays: which are shown, and how many pixels each paints.
 
-use eframe::egui::{RichText, Ui};
+use egui::{RichText, Ui};
 
 use crate::app::{
     picture::overlay::Overlay,
     shell::{action::Action, command::Commands, state::State},
-    widgets::{form::gain_ui, icons::swatch, panel::at_right, text::grouped, theme},
+    widgets::{form::gain_ui, icons::swatch, panel::at_right, text::group_digits, theme},
 };
 
 pub fn overlays_ui(ui: &mut Ui, state: &State, commands: &Commands) {
@@ -39,7 +39,7 @@ pub fn overlays_ui(ui: &mut Ui, state: &State, commands: &Commands) {
                 let count = findings.count(overlay);
                 let is_bad = overlay.is_error() && overlay.fault().is_some() && count > 0;
                 at_right(ui, |ui| {
-                    let text = RichText::new(grouped(count)).monospace();
+                    let text = RichText::new(group_digits(count)).monospace();
                     ui.label(text.color(if is_bad {
                         theme::red()
                     } else {

@@ -1,6 +1,6 @@
 //! The button "Parts" of the scene: which of them are shown.
 
-use eframe::egui::{self, Popup, PopupCloseBehavior, Ui};
+use egui::{self, Popup, PopupCloseBehavior, Ui};
 
 use super::scope::{Entry, entries, list_ui as parts_list_ui, part_search_ui, short_name};
 use crate::{

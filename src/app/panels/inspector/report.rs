@@ -1,6 +1,6 @@
 //! What the newest picture cost and how it was drawn: the folders Timing and Kernel.
 
-use eframe::egui::{self, RichText, Ui};
+use egui::{self, RichText, Ui};
 
 use crate::{
     app::{
@@ -11,7 +11,7 @@ use crate::{
         },
         shell::state::State,
         widgets::{
-            text::{self, grouped},
+            text::{self, group_digits},
             theme,
         },
     },
@@ -72,11 +72,11 @@ fn error_lines(findings: Option<&Findings>) -> Vec<(String, String)> {
     };
     let against_true = findings
         .wrong_against_true()
-        .map_or_else(|| "not known".into(), grouped);
+        .map_or_else(|| "not known".into(), group_digits);
     vec![
         (
             "wrong (snapped)".into(),
-            grouped(findings.accuracy.wrong_triangles),
+            group_digits(findings.accuracy.wrong_triangles),
         ),
         ("wrong (true)".into(), against_true),
         (

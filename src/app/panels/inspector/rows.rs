@@ -1,6 +1,6 @@
 //! Rows of settings and parameters, and the folders that hold them.
 
-use eframe::egui::{self, Ui};
+use egui::{self, Ui};
 
 use crate::{
     app::{

@@ -1,6 +1,6 @@
 //! The folder of the scene: its settings, its cameras and its images.
 
-use eframe::egui::Ui;
+use egui::Ui;
 
 use super::{
     parts::parts_ui,

@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use eframe::egui::{self, Popup, PopupCloseBehavior, ScrollArea, TextEdit, Ui};
+use egui::{self, Popup, PopupCloseBehavior, ScrollArea, TextEdit, Ui};
 
 use crate::{
     app::{

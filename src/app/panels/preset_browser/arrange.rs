@@ -142,7 +142,7 @@ mod tests {
             .collect()
     }
 
-    fn searched(search: &str) -> Vec<String> {
+    fn search_words(search: &str) -> Vec<String> {
         ids(&Filter {
             search: search.into(),
             ..Filter::default()
@@ -151,12 +151,20 @@ mod tests {
 
     #[test]
     fn presets_are_found_by_name_id_tag_and_effect() {
-        assert_eq!(searched("knot"), ["facet-knot"]);
-        assert_eq!(searched("one-bit"), ["one-bit"], "by id");
-        assert_eq!(searched("toon"), ["toon", "comic"], "the name before a tag");
-        assert_eq!(searched("lambert"), ["comic", "facet-knot"], "by effect");
-        assert_eq!(searched("outline dither"), ["one-bit"]);
-        assert!(searched("nothing of the kind").is_empty());
+        assert_eq!(search_words("knot"), ["facet-knot"]);
+        assert_eq!(search_words("one-bit"), ["one-bit"], "by id");
+        assert_eq!(
+            search_words("toon"),
+            ["toon", "comic"],
+            "the name before a tag"
+        );
+        assert_eq!(
+            search_words("lambert"),
+            ["comic", "facet-knot"],
+            "by effect"
+        );
+        assert_eq!(search_words("outline dither"), ["one-bit"]);
+        assert!(search_words("nothing of the kind").is_empty());
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! The menu of a preset in the gallery: open it with its scene, rename, duplicate, delete.
 
-use eframe::egui::{self, Ui};
+use egui::{self, Ui};
 
 use crate::{
     app::{

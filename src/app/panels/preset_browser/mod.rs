@@ -9,7 +9,7 @@ pub mod toolbar;
 
 use std::time::SystemTime;
 
-use eframe::egui::{self, Align, RichText, Ui, vec2};
+use egui::{self, Align, RichText, Ui, vec2};
 
 use self::{
     arrange::{Filter, Item, arrange, tags},
@@ -18,6 +18,7 @@ use self::{
     thumbnails::Size,
 };
 use super::effect_browser::EffectBrowser;
+use crate::app::panels::panel::Panel;
 use crate::{
     app::{
         editing::session::FileId,
@@ -32,7 +33,7 @@ use crate::{
         shell::{action::Action, command::Commands, state::State},
         widgets::{
             icons::{Icon, icon_button},
-            panel::{Panel, at_right},
+            panel::at_right,
             theme,
             tile::{Tile, Tiling},
         },

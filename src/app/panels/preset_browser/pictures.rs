@@ -3,7 +3,7 @@
 
 use std::sync::{Arc, Weak};
 
-use eframe::egui::{self, ColorImage, Context, TextureHandle, Ui};
+use egui::{self, ColorImage, Context, TextureHandle, Ui};
 
 use super::thumbnails::{Size, Thumbnails};
 use crate::{
@@ -118,8 +118,8 @@ impl Pictures {
     }
 
     /// Takes a picture that was drawn; none if the scene is too large or broken.
-    pub fn arrived(&mut self, ctx: &Context, id: &str, image: Option<ColorImage>) {
-        self.own.arrived(ctx, id, image);
+    pub fn take_picture(&mut self, ctx: &Context, id: &str, image: Option<ColorImage>) {
+        self.own.take_picture(ctx, id, image);
     }
 
     /// Takes a picture on the user's own scene; none if the preset or the scene does not allow it.
@@ -131,7 +131,7 @@ impl Pictures {
         image: Option<ColorImage>,
     ) {
         if let Some(on) = self.on_models.iter_mut().find(|on| on.key == *key) {
-            on.thumbnails.arrived(ctx, id, image);
+            on.thumbnails.take_picture(ctx, id, image);
         }
     }
 }
@@ -184,7 +184,7 @@ fn next_of(
         .find(|entry| entry.id == id)
         .filter(|entry| may_be_drawn(entry));
     let Some(found) = found.and_then(|entry| entry.preset_file.as_ref().ok()) else {
-        thumbnails.arrived(ctx, &id, None);
+        thumbnails.take_picture(ctx, &id, None);
         return None;
     };
     Some((found.clone(), size.pixels()))

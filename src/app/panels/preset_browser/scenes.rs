@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use eframe::egui::{self, Align2, DragValue, Label, Sense, Ui, vec2};
+use egui::{self, Align2, DragValue, Label, Sense, Ui, vec2};
 
 use crate::{
     app::{
@@ -13,7 +13,7 @@ use crate::{
             state::State,
         },
         widgets::{
-            text::{cut_middle, grouped},
+            text::{cut_middle, group_digits},
             theme,
         },
     },
@@ -80,13 +80,13 @@ fn shown_ui(ui: &mut Ui, session: &Session) {
     let Some(scene) = session.scene() else { return };
     ui.label(theme::weak(format!(
         "{} triangles · {} vertices",
-        grouped(scene.triangle_count()),
-        grouped(scene.vertex_count())
+        group_digits(scene.triangle_count()),
+        group_digits(scene.vertex_count())
     )));
     if scene.instances.len() > 1 {
         ui.label(theme::weak(format!(
             "{} instances",
-            grouped(scene.instances.len() as u64)
+            group_digits(scene.instances.len() as u64)
         )));
     }
     if scene.triangle_count() == 0 {

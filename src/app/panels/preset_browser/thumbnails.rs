@@ -3,7 +3,7 @@
 
 use std::collections::{HashMap, HashSet};
 
-use eframe::egui::{self, TextureHandle};
+use egui::{self, TextureHandle};
 
 use crate::app::picture::effect_picture;
 
@@ -109,7 +109,7 @@ impl Thumbnails {
     }
 
     /// Takes the picture that was drawn; none if it cannot be drawn.
-    pub fn arrived(&mut self, ctx: &egui::Context, id: &str, image: Option<egui::ColorImage>) {
+    pub fn take_picture(&mut self, ctx: &egui::Context, id: &str, image: Option<egui::ColorImage>) {
         let Some(key) = self.drawing.take_if(|(drawing, _)| drawing == id) else {
             return;
         };
@@ -162,9 +162,9 @@ mod tests {
         thumbnails.picture("c", Size::Small, true);
         assert_eq!(thumbnails.next(), Some(("a".into(), Size::Small)));
         assert_eq!(thumbnails.next(), None, "one at a time");
-        thumbnails.arrived(&ctx, "a", image());
+        thumbnails.take_picture(&ctx, "a", image());
         assert_eq!(thumbnails.next(), Some(("c".into(), Size::Small)));
-        thumbnails.arrived(&ctx, "c", None);
+        thumbnails.take_picture(&ctx, "c", None);
         assert!(!thumbnails.is_busy());
         thumbnails.begin_frame();
         assert!(
@@ -187,12 +187,12 @@ mod tests {
         let (ctx, mut thumbnails) = (egui::Context::default(), Thumbnails::default());
         thumbnails.picture("a", Size::Small, true);
         thumbnails.next();
-        thumbnails.arrived(&ctx, "a", image());
+        thumbnails.take_picture(&ctx, "a", image());
         thumbnails.changed("a");
         assert!(thumbnails.picture("a", Size::Small, true).is_some());
         assert_eq!(thumbnails.next(), Some(("a".into(), Size::Small)));
         // One that was scrolled away while it waited is not drawn.
-        thumbnails.arrived(&ctx, "a", image());
+        thumbnails.take_picture(&ctx, "a", image());
         thumbnails.picture("b", Size::Small, true);
         thumbnails.begin_frame();
         assert_eq!(thumbnails.next(), None);

@@ -1,6 +1,6 @@
 //! The head of the gallery: search, order, favorites, list or grid, and tags to choose.
 
-use eframe::egui::{Button, RichText, Ui, vec2};
+use egui::{Button, RichText, Ui, vec2};
 
 use super::arrange::Filter;
 use crate::app::{

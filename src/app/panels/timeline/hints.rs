@@ -1,7 +1,7 @@
 //! What the timeline says while nothing is animated: how to animate a value, or which clips the
 //! scene has.
 
-use eframe::egui::{self, Label, Ui, vec2};
+use egui::{self, Label, Ui, vec2};
 
 use super::tracks::TRACK;
 use crate::{

@@ -8,9 +8,10 @@ mod tracks;
 
 use std::collections::BTreeSet;
 
-use eframe::egui::{self, Align, DragValue, Layout, Rect, Ui, pos2, vec2};
+use egui::{self, Align, DragValue, Layout, Rect, Ui, pos2, vec2};
 
 use self::span::Span;
+use crate::app::panels::panel::Panel;
 use crate::{
     app::{
         editing::apply::keyframe,
@@ -22,7 +23,7 @@ use crate::{
         },
         widgets::{
             icons::{Icon, icon_button, toggle_button},
-            panel::{Panel, at_right},
+            panel::at_right,
             theme,
         },
     },
@@ -55,7 +56,7 @@ pub struct Timeline {
 }
 
 /// Tracks of the enabled effects.
-fn animated(session: &Session) -> Vec<&Track> {
+fn animated_tracks(session: &Session) -> Vec<&Track> {
     let preset = session.preset();
     preset
         .animation
@@ -68,7 +69,7 @@ fn animated(session: &Session) -> Vec<&Track> {
 impl Timeline {
     /// Height of the whole panel, points.
     pub fn height(&self, session: &Session) -> f32 {
-        let heights = animated(session)
+        let heights = animated_tracks(session)
             .into_iter()
             .map(|track| tracks::height(self.open.contains(&track.path())))
             .sum::<f32>();
@@ -155,7 +156,7 @@ impl Panel for Timeline {
                 });
             });
         });
-        let tracks = animated(session);
+        let tracks = animated_tracks(session);
         if self.span_s.is_none() || !ui.input(|i| i.pointer.any_down()) {
             self.span_s = Some(span::extent(session.preset().clock.range_s, &tracks));
         }

@@ -1,7 +1,7 @@
 //! The ruler: seconds from left to right, the range that plays, and the playhead that is dragged to
 //! scrub.
 
-use eframe::egui::{self, Align2, FontId, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
+use egui::{self, Align2, FontId, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
 
 use super::span::Span;
 use crate::app::{editing::session::Session, shell::command::Commands, widgets::theme};

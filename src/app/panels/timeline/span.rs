@@ -1,6 +1,6 @@
 //! The scale of the timeline: seconds to points and back.
 
-use eframe::egui::Rect;
+use egui::Rect;
 
 use crate::preset::animation::Track;
 
@@ -53,7 +53,7 @@ pub fn extent([from_s, to_s]: [f64; 2], tracks: &[&Track]) -> [f64; 2] {
 
 #[cfg(test)]
 mod tests {
-    use eframe::egui::pos2;
+    use egui::pos2;
 
     use super::*;
 

@@ -3,7 +3,7 @@
 
 use std::collections::BTreeSet;
 
-use eframe::egui::{
+use egui::{
     self, Align, Align2, Color32, FontId, Layout, Pos2, Rect, Sense, Shape, Stroke, Ui, UiBuilder,
     pos2, vec2,
 };

@@ -6,8 +6,9 @@ mod table;
 
 use std::sync::Arc;
 
-use eframe::egui::{self, RichText, Ui};
+use egui::{self, RichText, Ui};
 
+use crate::app::panels::panel::Panel;
 use crate::{
     accuracy::{AXES, Axis},
     app::{
@@ -22,7 +23,7 @@ use crate::{
         },
         widgets::{
             icons::{Icon, icon_button},
-            panel::{Panel, at_right, main_button},
+            panel::{at_right, main_button},
             text::first_line,
             theme,
         },
@@ -157,7 +158,7 @@ impl TradePanel {
 
     /// Takes the points of the measurement that has ended. One that was canceled keeps those that
     /// were timed. Returns the whole message of an error.
-    pub fn arrived(&mut self, points: Result<Vec<Point>, String>) -> Option<String> {
+    pub fn take_points(&mut self, points: Result<Vec<Point>, String>) -> Option<String> {
         let Running {
             request,
             progress,

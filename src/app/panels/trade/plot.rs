@@ -2,7 +2,7 @@
 //! egui_plot has no such axes, so points are plotted by their logarithms and ticks are labeled with
 //! the values themselves.
 
-use eframe::egui::{self, Color32, Painter, Pos2, Rect, Response, RichText, Sense, Ui, Vec2, vec2};
+use egui::{self, Color32, Painter, Pos2, Rect, Response, RichText, Sense, Ui, Vec2, vec2};
 use egui_plot::{GridMark, HLine, Line, LineStyle, Plot, PlotPoint, PlotPoints};
 
 use crate::app::{

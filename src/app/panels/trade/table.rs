@@ -1,6 +1,6 @@
 //! The table: the same points as the plot in numbers, the dominated ones too.
 
-use eframe::egui::{self, RichText, Ui};
+use egui::{self, RichText, Ui};
 
 use crate::{
     accuracy::Axis,

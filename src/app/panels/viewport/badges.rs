@@ -1,6 +1,6 @@
 //! Badges over the picture: what is wrong with files that it depends on, until that is mended.
 
-use eframe::egui::{self, Rect, RichText, Ui};
+use egui::{self, Rect, RichText, Ui};
 
 use crate::app::{files::live::Subject, shell::state::State, widgets::theme};
 

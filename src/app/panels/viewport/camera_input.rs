@@ -1,6 +1,6 @@
 //! Pointer, wheel and fly keys on the camera.
 
-use eframe::egui::{Key, PointerButton, Response, Ui, Vec2};
+use egui::{Key, PointerButton, Response, Ui, Vec2};
 
 use crate::{
     app::editing::session::Session,

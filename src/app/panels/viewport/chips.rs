@@ -1,7 +1,7 @@
 //! Over the picture: its state on the left, buttons of views on the right, and a hint while a file
 //! hovers.
 
-use eframe::egui::{self, Align2, Color32, FontId, Rect, RichText, Ui, pos2};
+use egui::{self, Align2, Color32, FontId, Rect, RichText, Ui, pos2};
 
 use crate::{
     app::{

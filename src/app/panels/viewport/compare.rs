@@ -5,7 +5,7 @@
 
 use std::sync::Arc;
 
-use eframe::egui::Rect;
+use egui::Rect;
 
 use crate::{
     accuracy::{PinnedOptions, RenderScale},

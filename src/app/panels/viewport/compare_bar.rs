@@ -1,6 +1,6 @@
 //! The bar of a comparison: how A and B are shown, how they differ, and which side is which.
 
-use eframe::egui::{self, Align2, Rect, RichText, Ui, pos2, vec2};
+use egui::{self, Align2, Rect, RichText, Ui, pos2, vec2};
 
 use super::compare::{Compare, Difference, Mode};
 use crate::{
@@ -10,7 +10,7 @@ use crate::{
         widgets::{
             form::{gain_ui, modes_ui},
             panel::plate,
-            text::grouped,
+            text::group_digits,
             theme,
         },
     },
@@ -120,7 +120,7 @@ fn difference_text(compare: &mut Compare, state: &State) -> String {
             "max \u{394} {}, RMS {:.3}, {} other {word}",
             colors.max_delta,
             colors.rms,
-            grouped(others)
+            group_digits(others)
         )
     } else {
         let ([w, h], [v, g]) = (found_a.size, found_b.size);

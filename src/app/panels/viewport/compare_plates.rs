@@ -1,6 +1,6 @@
 //! The plates of a comparison: below each side what it shows, its time and its error.
 
-use eframe::egui::{self, Color32, Rect, RichText, Ui, pos2, vec2};
+use egui::{self, Color32, Rect, RichText, Ui, pos2, vec2};
 
 use super::compare::{Compare, Mode};
 use crate::{

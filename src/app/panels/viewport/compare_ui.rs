@@ -1,12 +1,12 @@
 //! The comparison over the picture: A, the divider, the bar and the plates.
 
-use eframe::egui::{self, Color32, CursorIcon, Pos2, Rect, Sense, Ui, pos2, vec2};
+use egui::{self, Color32, CursorIcon, Pos2, Rect, Sense, Ui, pos2, vec2};
 
 use super::{
     compare::{Compare, Mode},
     compare_bar::{bar_ui, labels_ui},
     compare_plates::plates_ui,
-    layout::fitted,
+    layout::fit_aspect,
     overlays::OverlayPainter,
 };
 use crate::app::{
@@ -45,7 +45,7 @@ pub fn compare_ui(
                 .and_then(|a| a.difference(&state.picture.screen, compare.gain)),
             _ => Some(blit.clone()),
         };
-        let target = fitted(
+        let target = fit_aspect(
             if mode == Mode::SideBySide {
                 half_a
             } else {

@@ -1,6 +1,6 @@
 //! What is compiled for the next picture, over the picture that stays until then.
 
-use eframe::egui::{self, Rect, Sense, Ui, vec2};
+use egui::{self, Rect, Sense, Ui, vec2};
 
 use crate::app::{shell::state::State, widgets::theme};
 

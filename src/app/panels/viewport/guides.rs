@@ -1,11 +1,11 @@
 //! Guides over the picture: the box of the scene, its axes, a grid under it, and the distance
 //! between two points that were clicked. They are painted over the picture, whatever hides them.
 
-use eframe::egui::{self, Align2, Color32, FontId, Painter, Pos2, Rect, Response, Sense, Ui, vec2};
+use egui::{self, Align2, Color32, FontId, Painter, Pos2, Rect, Response, Sense, Ui, vec2};
 use glam::{DMat4, DVec2, DVec3, DVec4};
 
 use super::{
-    layout::{fitted, whole_size},
+    layout::{fit_aspect, whole_size},
     points::seen_at,
 };
 use crate::{
@@ -224,7 +224,7 @@ pub fn take_click(ui: &Ui, response: &Response, side: Rect, state: &State, comma
         return;
     };
     let size = whole_size(response.rect);
-    let at = fitted(side, size);
+    let at = fit_aspect(side, size);
     if !at.contains(pointer) {
         return;
     }

@@ -1,7 +1,7 @@
 //! Handles in the picture: each stands where an effect has a point, like the center of a pattern,
 //! and a drag moves that point.
 
-use eframe::egui::{self, CursorIcon, Pos2, Rect, Sense, Ui, Vec2, vec2};
+use egui::{self, CursorIcon, Pos2, Rect, Sense, Ui, Vec2, vec2};
 use glam::{DVec2, DVec3};
 
 use super::{

@@ -1,6 +1,6 @@
 //! The legend of the overdraw heat map, over the lower left of the picture.
 
-use eframe::egui::{Align2, Color32, FontId, Mesh, Rect, Ui, pos2, vec2};
+use egui::{Align2, Color32, FontId, Mesh, Rect, Ui, pos2, vec2};
 
 use crate::{app::widgets::theme, effects::overdraw::Overdraw};
 

@@ -1,10 +1,10 @@
 //! Where a picture goes in the window.
 
-use eframe::egui::{Rect, vec2};
+use egui::{Rect, vec2};
 
 /// All of `rect`, or the largest rectangle of the picture's aspect ratio in its middle, so that a
 /// picture from before a resize is not stretched.
-pub fn fitted(rect: Rect, [width, height]: [u32; 2]) -> Rect {
+pub fn fit_aspect(rect: Rect, [width, height]: [u32; 2]) -> Rect {
     let scale = (rect.width() / width as f32).min(rect.height() / height as f32);
     let size = vec2(width as f32, height as f32) * scale;
     let fits = (size - rect.size()).abs().max_elem() < 4.0;

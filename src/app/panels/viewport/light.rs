@@ -1,7 +1,7 @@
 //! The ball in the corner of the picture: it is lit from the direction of the preset's light, and a
 //! drag turns that light.
 
-use eframe::egui::{self, Color32, Mesh, Pos2, Rect, Sense, Stroke, Ui, Vec2, vec2};
+use egui::{self, Color32, Mesh, Pos2, Rect, Sense, Stroke, Ui, Vec2, vec2};
 use glam::{DQuat, DVec3};
 
 use crate::{
@@ -124,7 +124,7 @@ pub fn light_ui(ui: &mut Ui, session: &Session, commands: &Commands, at: Rect) {
     let drag = response.drag_delta();
     if drag != Vec2::ZERO {
         let [right, down] = [drag.x, drag.y].map(|points| f64::from(points / RADIUS));
-        light.turn(turned(toward, &camera, right, down), commands);
+        light.turn(turn_direction(toward, &camera, right, down), commands);
     }
     let [azimuth, elevation] = angles(toward);
     response.on_hover_text(format!(
@@ -141,7 +141,7 @@ fn angles(toward: DVec3) -> [f64; 2] {
 }
 
 /// A direction turned like a ball that is dragged right and down, radians.
-fn turned(toward: DVec3, camera: &Camera, right: f64, down: f64) -> DVec3 {
+fn turn_direction(toward: DVec3, camera: &Camera, right: f64, down: f64) -> DVec3 {
     let (x, y) = camera_moves::axes(camera);
     (DQuat::from_axis_angle(x, down) * (DQuat::from_axis_angle(y, right) * toward))
         .normalize_or(toward)
@@ -216,8 +216,8 @@ mod tests {
         let (x, y) = camera_moves::axes(&camera);
         let front = -camera.forward();
         assert!(
-            turned(front, &camera, 0.1, 0.0).dot(x) > 0.09
-                && turned(front, &camera, 0.0, 0.1).dot(y) < -0.09
+            turn_direction(front, &camera, 0.1, 0.0).dot(x) > 0.09
+                && turn_direction(front, &camera, 0.0, 0.1).dot(y) < -0.09
         );
         for (azimuth_deg, elevation_deg) in [(30.0, 40.0), (-150.0, -10.0), (90.0, 89.0)] {
             let [azimuth, elevation] = angles(

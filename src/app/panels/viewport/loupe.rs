@@ -1,7 +1,7 @@
 //! The loupe: the pixels round the one that the probe tells of, enlarged, with their values written
 //! in them where there is room.
 
-use eframe::egui::{self, Align2, Color32, FontId, Rect, Sense, Ui, pos2, vec2};
+use egui::{self, Align2, Color32, FontId, Rect, Sense, Ui, pos2, vec2};
 
 use crate::{
     app::{

@@ -1,6 +1,6 @@
 //! The marker: a place in the picture that another panel points at.
 
-use eframe::egui::{self, Align2, FontId, Rect, Sense, Ui, pos2, vec2};
+use egui::{self, Align2, FontId, Rect, Sense, Ui, pos2, vec2};
 
 use crate::app::{
     shell::state::State,

@@ -25,11 +25,11 @@ mod probe;
 
 use std::sync::Arc;
 
-use eframe::egui::{self, Align2, FontId, Rect, Response, Sense, Ui, vec2};
+use egui::{self, Align2, FontId, Rect, Response, Sense, Ui, vec2};
 
 use self::{
     compare::Compare,
-    layout::{fitted, whole_size},
+    layout::{fit_aspect, whole_size},
     loupe::Loupe,
     overlays::OverlayPainter,
 };
@@ -111,7 +111,7 @@ impl Viewport {
             );
         }
         if !self.compare.hides_b() {
-            let at = fitted(self.compare.side_b(rect), whole_size(rect));
+            let at = fit_aspect(self.compare.side_b(rect), whole_size(rect));
             match ui.input(|i| i.modifiers.shift) {
                 true => {
                     guides::take_click(ui, &response, self.compare.side_b(rect), state, commands)
@@ -323,7 +323,7 @@ fn picture_ui(ui: &Ui, state: &State, rect: Rect) -> Rect {
         .picture()
         .filter(|(_, size)| size.iter().all(|&side| side > 0))
     {
-        let at = fitted(rect, size);
+        let at = fit_aspect(rect, size);
         if at != rect {
             painter.rect_filled(rect, 0.0, theme::view());
         }

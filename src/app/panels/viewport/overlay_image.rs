@@ -1,6 +1,6 @@
 //! The image of the overlays: transparent, with a texel per pixel of the picture.
 
-use eframe::egui::{Color32, ColorImage};
+use egui::{Color32, ColorImage};
 use rayon::prelude::*;
 
 use crate::{

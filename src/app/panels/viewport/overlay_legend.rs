@@ -1,7 +1,7 @@
 //! The legend of the overlays: what each shows and on how many pixels. An overlay that paints
 //! nothing has no line.
 
-use eframe::egui::{self, Color32, Pos2, Rect, RichText, Ui, pos2, vec2};
+use egui::{self, Color32, Pos2, Rect, RichText, Ui, pos2, vec2};
 
 use crate::{
     app::{
@@ -10,7 +10,7 @@ use crate::{
             overlay::{Overlay, OverlaySelection},
         },
         shell::{action::Action, command::Commands, state::State},
-        widgets::{icons::swatch, text::grouped, theme},
+        widgets::{icons::swatch, text::group_digits, theme},
     },
     effect_files::Crossing,
     effects::Stack,
@@ -56,7 +56,7 @@ fn lines(overlays: &OverlaySelection, found: &Findings, stack: &Stack) -> Vec<Li
                 theme::text_strong(),
                 format!(
                     "    {} px: {}",
-                    grouped(*count),
+                    group_digits(*count),
                     crossing_text(crossing, stack)
                 ),
             )
@@ -66,7 +66,7 @@ fn lines(overlays: &OverlaySelection, found: &Findings, stack: &Stack) -> Vec<Li
         .into_iter()
         .filter(|overlay| overlay.is_error())
         .collect();
-    let pixels = grouped(found.faults.pixels() as u64);
+    let pixels = group_digits(found.faults.pixels() as u64);
     if !errors.is_empty() && errors.iter().all(|overlay| found.count(*overlay) == 0) {
         let what = if let [one] = errors[..] {
             format!("no {}", one.name().to_lowercase())
@@ -113,7 +113,10 @@ fn crossing_text(crossing: &Crossing, stack: &Stack) -> String {
 
 /// The line of one overlay.
 fn line(overlay: Overlay, gain: u8, found: &Findings) -> Line {
-    let (name, count) = (overlay.name().to_lowercase(), grouped(found.count(overlay)));
+    let (name, count) = (
+        overlay.name().to_lowercase(),
+        group_digits(found.count(overlay)),
+    );
     let text = match overlay {
         Overlay::Color => {
             let max = found.faults.color_delta.iter().max().copied().unwrap_or(0);

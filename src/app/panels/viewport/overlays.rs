@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use eframe::egui::{self, Color32, Pos2, Rect, Ui, pos2, vec2};
+use egui::{self, Color32, Pos2, Rect, Ui, pos2, vec2};
 
 use super::overlay_image::{image, rings};
 use crate::app::{

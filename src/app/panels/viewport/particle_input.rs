@@ -1,6 +1,6 @@
 //! The pointer on the particles: Ctrl and a drag move their attractor.
 
-use eframe::egui::{PointerButton, Response};
+use egui::{PointerButton, Response};
 use glam::{DVec2, DVec3};
 
 use super::{

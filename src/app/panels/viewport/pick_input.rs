@@ -1,11 +1,11 @@
 //! Picking: a click on the model sets a point parameter, or adds a part to those that an effect
 //! changes.
 
-use eframe::egui::{Rect, Response};
+use egui::{Rect, Response};
 use glam::DVec2;
 
 use super::{
-    layout::{fitted, whole_size},
+    layout::{fit_aspect, whole_size},
     points::PointSpace,
 };
 use crate::{
@@ -42,7 +42,7 @@ pub fn pick(
     };
     let size = whole_size(response.rect);
     // Side by side the picture is smaller, with nothing to click on around it.
-    let shown = fitted(side, size);
+    let shown = fit_aspect(side, size);
     if !shown.contains(at) {
         return;
     }

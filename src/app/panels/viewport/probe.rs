@@ -1,6 +1,6 @@
 //! The probe: a click on a judged picture with overlays tells why the pixel shows what it shows.
 
-use eframe::egui::{self, Rect, Response, RichText, ScrollArea, Ui};
+use egui::{self, Rect, Response, RichText, ScrollArea, Ui};
 
 use super::{loupe::Loupe, overlay_legend::judged_pixel};
 use crate::app::{

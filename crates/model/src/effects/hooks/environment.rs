@@ -13,15 +13,15 @@ choice! {
     /// What surrounds the scene.
     pub enum Environment {
         /// A dim room with a large lamp at the left, one at the right and one behind.
-        Studio = "studio",
+        Studio,
         /// A bright gray sky.
-        Overcast = "overcast",
+        Overcast,
         /// A low sun at the right in front, under a sky that is orange below and blue above.
-        LowSun = "low_sun",
+        LowSun,
         /// The moon, a street lamp and a colored sign.
-        Night = "night",
+        Night,
         /// The picture that the preset names as `scene.surroundings`; without one the studio.
-        Picture = "picture",
+        Picture,
     }
 }
 

@@ -7,46 +7,36 @@ use super::{ErrorBound, ROUNDING};
 use crate::{
     choice,
     math::{HASH_GOLDEN, hash_unit},
-    params,
-    params::Point,
 };
 
 choice! {
     /// How an effect is spread over the triangles.
     pub enum Pattern {
         /// All alike.
-        Uniform = "uniform",
+        Uniform,
         /// A front that crosses the picture.
-        Sweep = "sweep",
+        Sweep,
         /// A front that grows round a point.
-        Radial = "radial",
+        Radial,
         /// Each at its own time.
-        Random = "random",
+        Random,
     }
 }
 
-params! {
-    /// How an effect is spread over the triangles, and where its front stands. Mirror of the struct in `shaders/lib/front.wgsl`.
-    pub struct Front {
-        /// Center of the radial front, world space.
-        center: Point = [0.0, 0.0, 0.0, 0.0], soft -3.0..=3.0, unit "m", when ("pattern", &["radial"]);
-        /// How the effect is spread over the triangles.
-        pattern: Pattern = Pattern::Uniform as u32;
-        /// Progress of the front: 0 before the first triangle, 1 past the last.
-        front: f32 = 0.5, hard 0.0..=1.0, when ("pattern", &["sweep", "random"]);
-        /// Softness of the front, as a fraction of its path.
-        width: f32 = 0.25, hard 0.001..=100.0, soft 0.001..=2.0, log true, when ("pattern", &["sweep", "random"]);
-        /// Direction of the sweep in the picture: part to the right.
-        along_x: f32 = 1.0, hard -1.0..=1.0, when ("pattern", &["sweep"]);
-        /// Direction of the sweep in the picture: part downwards.
-        along_y: f32 = 0.0, hard -1.0..=1.0, when ("pattern", &["sweep"]);
-        /// Distance of the front from the center.
-        radius_m: f32 = 1.0, hard 0.0..=1e6, soft 0.0..=5.0, unit "m", when ("pattern", &["radial"]);
-        /// Thickness of the front.
-        width_m: f32 = 0.5, hard 0.001..=1e6, soft 0.01..=5.0, unit "m", log true, when ("pattern", &["radial"]);
-        /// Seed of everything random in the effect.
-        seed: u32 = 1, soft 0.0..=999.0, when ("pattern", &["random"]);
-    }
+/// How an effect is spread over the triangles, and where its front stands: words of its parameters.
+/// Mirror of the struct in `shaders/lib/front.wgsl`.
+#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+pub struct Front {
+    pub center: [f32; 4],
+    pub pattern: u32,
+    pub front: f32,
+    pub width: f32,
+    pub along_x: f32,
+    pub along_y: f32,
+    pub radius_m: f32,
+    pub width_m: f32,
+    pub seed: u32,
 }
 
 impl Front {

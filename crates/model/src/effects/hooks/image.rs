@@ -4,8 +4,6 @@ use std::sync::Arc;
 
 use glam::DVec4;
 
-use crate::params::Params;
-
 /// A finished pixel of the picture; an image effect changes its color and passes it on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pixel {
@@ -68,12 +66,4 @@ pub type FinishFunction = dyn Fn(Pixel, &Picture<'_>, &[u32]) -> Pixel + Send + 
 pub struct ImageHook {
     pub reads_previous: bool,
     pub finish: Arc<FinishFunction>,
-}
-
-/// The f64 side of an effect on the image hook.
-pub trait ImageEffect: Params {
-    /// It reads [`Picture::previous`], so the previous picture must be kept.
-    const READS_PREVIOUS: bool = false;
-
-    fn finish(pixel: Pixel, picture: &Picture, params: &Self) -> Pixel;
 }

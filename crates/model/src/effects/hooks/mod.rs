@@ -12,7 +12,7 @@ pub mod tone;
 mod vertex;
 
 pub use front::{Front, Pattern};
-pub use image::{ImageEffect, ImageHook, Picture, Pixel};
+pub use image::{ImageHook, Picture, Pixel};
 pub use passes::{
     EMPTY_DEPTH_M, EarlierFrames, Image, ImageAt, ImagePass, Lens, PassEffect, PassFunction,
     PassHook, PassInput, Signs,

@@ -7,7 +7,7 @@ use glam::{DVec2, DVec3, DVec4};
 
 use super::Picture;
 use crate::{
-    params::Params,
+    effects::Words,
     scene::{panorama::Panorama, view::View},
 };
 
@@ -328,14 +328,7 @@ impl PassHook {
 }
 
 /// The f64 side of an effect of image passes.
-pub trait PassEffect: Params {
-    /// Name and scale of every pass, in order; the last one has scale 1. A single pass has no
-    /// name.
-    const PASSES: &'static [(&'static str, u32)];
-
-    /// Index of the pass that is [kept](ImagePass::kept), and the frames that a picture follows.
-    const KEPT: Option<(usize, EarlierFrames)> = None;
-
+pub trait PassEffect: Words {
     /// What the pass of this index writes: linear RGBA.
     fn pass(index: usize, at: &ImageAt, params: &Self) -> DVec4;
 }

@@ -9,7 +9,7 @@ use std::{cmp::Ordering, sync::Arc};
 use glam::{DVec2, DVec3};
 
 use super::{ErrorBound, ROUNDING};
-use crate::params::Params;
+use crate::effects::Words;
 
 /// What is known of a triangle, or of a clipped triangle, when the setup of its samples is
 /// computed.
@@ -150,7 +150,7 @@ pub struct SampleHook {
 }
 
 /// The integer side of an effect on the sample hook.
-pub trait SampleEffect: Params {
+pub trait SampleEffect: Words {
     /// Samples read [`Sample::setup`].
     const HAS_SETUP: bool;
 

@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3, DVec4};
 
 use crate::{
-    params::Params,
+    effects::Words,
     scene::{material::Material, panorama::Panorama, punctual::PlacedLight},
 };
 
@@ -252,10 +252,7 @@ impl SurfaceInput {
 }
 
 /// The f64 side of an effect on the surface hook.
-pub trait SurfaceEffect: Params {
-    /// The members of the surface that both sides read.
-    const INPUTS: &'static [SurfaceInput];
-
+pub trait SurfaceEffect: Words {
     fn apply(surface: Surface, params: &Self) -> Surface;
 }
 

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 
-use crate::params::Params;
+use crate::effects::Words;
 
 /// A corner of a triangle before it is projected; a vertex effect moves it and passes it on.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -79,7 +79,7 @@ pub struct VertexHook {
 }
 
 /// The f64 side of an effect on the vertex hook.
-pub trait VertexEffect: Params {
+pub trait VertexEffect: Words {
     /// It reads `flat_normal`, `center`, `arm`, `center_screen` or `triangle`.
     const NEEDS_TRIANGLE: bool;
 

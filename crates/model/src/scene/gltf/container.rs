@@ -8,7 +8,7 @@ use super::{
     other_file,
     source::{Bytes, Source, reserve},
 };
-use crate::legible::grouped;
+use crate::legible::group_digits;
 
 /// The JSON and, of a GLB, the binary chunk.
 ///
@@ -95,7 +95,7 @@ fn split_glb<'a>(
     let json =
         json.ok_or_else(|| LoadError::new("the GLB has no chunk of JSON; it is truncated"))?;
     if length > size && (short.is_some() || binary.is_none()) {
-        let [there, stated] = [size, length].map(grouped);
+        let [there, stated] = [size, length].map(group_digits);
         notes.cut_off(format!(
             "the file is cut off after {there} of {stated} bytes"
         ));

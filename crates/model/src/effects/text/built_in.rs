@@ -1,0 +1,270 @@
+//! Built-in effects by their files: the declarations of `shaders/effects/NAME.wgsl` are the effect,
+//! and its functions, evaluated in f64, are the reference. A text is parsed when it is first
+//! evaluated.
+
+use std::{
+    borrow::Cow,
+    fmt::Write,
+    sync::{Arc, OnceLock},
+};
+
+use super::{
+    assembled::assembled,
+    attributes,
+    declaration::{self, Author, Declaration, OF_FUNCTIONS},
+    error::{EffectError, Text},
+    tokens::{Token, closing, tokens},
+    twin::{self, Function},
+};
+use crate::{
+    effects::{
+        Effect, SurfaceInput, constant_name,
+        hooks::{
+            Hooks, ImageAt, ImageHook, ImagePass, PassHook, Picture, Pixel, Sample, SampleHook,
+            Surface, VertexHook,
+        },
+    },
+    evaluator::Precision,
+    params::ValueType,
+    shaders::{Library, sections},
+};
+
+/// The effect that the built-in file `name` declares.
+///
+/// # Errors
+/// The first fault of the file.
+pub fn built_in(name: &str) -> Result<Effect, EffectError> {
+    let file = format!("shaders/effects/{name}.wgsl");
+    let whole = Library::Embedded.text(&format!("effects/{name}"));
+    let whole = whole.unwrap_or_default();
+    let text = Text {
+        file: &file,
+        text: &whole[sections(&whole)[0].1.clone()],
+    };
+    let declaration = declaration::read(&text, name, Author::Lab)?;
+    let mut effect = Effect {
+        name: name.into(),
+        about: declaration.about.clone(),
+        hooks: Hooks::default(),
+        fields: declaration.parameters.fields.clone(),
+        given: declaration.parameters.given.clone(),
+        defaults: declaration.parameters.defaults.clone(),
+        wgsl_struct: declaration.struct_name.into(),
+        source: None,
+        base: None,
+        is_repeatable: |_| true,
+    };
+    effect.hooks = hooks(&effect, &declaration);
+    Ok(effect)
+}
+
+/// The hooks that the functions of a file are on.
+fn hooks(effect: &Effect, declaration: &Declaration<'_>) -> Hooks {
+    let functions = &declaration.hooks;
+    let text = |names: Vec<String>| Arc::new(LazyText::new(effect, names));
+    let mut hooks = Hooks::default();
+    if let Some(name) = &functions.vertex {
+        let needs_triangle = reads_triangle(&declaration.tokens);
+        let (text, known) = (text(vec![name.clone()]), OnceLock::new());
+        let hook = Arc::new(move || -> VertexHook {
+            let make = || twin::vertex(text.exact(0), text.rounded(0), needs_triangle);
+            known.get_or_init(make).clone()
+        });
+        let (moved, error_bound, reach) = (hook.clone(), hook.clone(), hook);
+        hooks.vertex = Some(VertexHook {
+            needs_triangle,
+            moved: Arc::new(move |v, words| (moved().moved)(v, words)),
+            error_bound: Arc::new(move |v, bound, words| {
+                (error_bound().error_bound)(v, bound, words)
+            }),
+            max_displacement_m: Arc::new(move |radius_m, words| {
+                (reach().max_displacement_m)(radius_m, words)
+            }),
+        });
+    }
+    if let Some(name) = &functions.sample {
+        let (text, known) = (text(vec![name.clone()]), OnceLock::new());
+        hooks.sample = Some(SampleHook {
+            has_setup: false,
+            error_bound: Arc::new(|_, _| 0.0),
+            is_from_floats: Arc::new(|_| false),
+            sample_setup: Arc::new(|_, _, _| [0; 4]),
+            is_drawn: Arc::new(move |s: &Sample, words: &[u32]| {
+                let hook: &SampleHook = known.get_or_init(|| twin::sample(text.exact(0)));
+                (hook.is_drawn)(s, words)
+            }),
+        });
+    }
+    if let Some(name) = &functions.surface {
+        let (text, known) = (text(vec![name.clone()]), OnceLock::new());
+        hooks.surface = Some(Arc::new(move |s: Surface, words: &[u32]| {
+            known.get_or_init(|| twin::surface(text.exact(0), text.rounded(0)))(s, words)
+        }));
+        hooks.surface_inputs = surface_inputs(&declaration.tokens);
+    }
+    if let Some(name) = &functions.image {
+        let reads_previous = declaration
+            .tokens
+            .iter()
+            .any(|token| token.text == "image_previous");
+        let (text, known) = (text(vec![name.clone()]), OnceLock::new());
+        let finish = move |q: Pixel, picture: &Picture<'_>, words: &[u32]| {
+            let hook: &ImageHook =
+                known.get_or_init(|| twin::image(text.exact(0), text.rounded(0), reads_previous));
+            (hook.finish)(q, picture, words)
+        };
+        hooks.image = Some(ImageHook {
+            reads_previous,
+            finish: Arc::new(finish),
+        });
+    }
+    if !declaration.passes.is_empty() {
+        let names: Vec<String> = declaration
+            .passes
+            .iter()
+            .map(|pass| pass.name.clone())
+            .collect();
+        let (text, known, count) = (text(names), OnceLock::new(), declaration.passes.len());
+        let run = move |index: usize, at: &ImageAt<'_>, words: &[u32]| {
+            let hook: &PassHook = known.get_or_init(|| {
+                let [exact, rounded] = [LazyText::exact, LazyText::rounded]
+                    .map(|functions| (0..count).map(|pass| functions(&text, pass)).collect());
+                twin::passes(Vec::new(), exact, rounded)
+            });
+            (hook.run)(index, at, words)
+        };
+        // A pass of a built-in effect is called by what follows the effect's name.
+        let named = |pass: &ImagePass| {
+            let rest = pass.name.strip_prefix(&effect.name).unwrap_or(&pass.name);
+            ImagePass {
+                name: rest.trim_start_matches('_').into(),
+                ..pass.clone()
+            }
+        };
+        hooks.passes = Some(PassHook {
+            passes: declaration.passes.iter().map(named).collect(),
+            run: Arc::new(run),
+        });
+    }
+    let has_color = functions.surface.is_some() || functions.image.is_some();
+    hooks.has_steps = has_color && !declaration.is_smooth;
+    hooks
+}
+
+/// Functions of a built-in effect, read when they are first called.
+struct LazyText {
+    /// For its members.
+    effect: Effect,
+    names: Vec<String>,
+    /// Each function in f64 and in f32.
+    functions: OnceLock<Vec<[Function; 2]>>,
+}
+
+impl LazyText {
+    fn new(effect: &Effect, names: Vec<String>) -> Self {
+        Self {
+            effect: effect.clone(),
+            names,
+            functions: OnceLock::new(),
+        }
+    }
+
+    fn functions(&self) -> &[[Function; 2]] {
+        self.functions.get_or_init(|| {
+            let roots: Vec<&str> = self.names.iter().map(String::as_str).collect();
+            let text = assembled(&self.effect.name, &roots, &constants(&self.effect));
+            let module = naga::front::wgsl::parse_str(&text).unwrap_or_else(|error| {
+                panic!("{}: {}", self.effect.name, error.emit_to_string(&text))
+            });
+            let function = |name: &&str| {
+                [Precision::Double, Precision::Single].map(|precision| {
+                    Function::new(&module, &text, name, &self.effect, precision)
+                        .unwrap_or_else(|error| panic!("{name}: {error}"))
+                })
+            };
+            roots.iter().map(function).collect()
+        })
+    }
+
+    fn exact(&self, index: usize) -> Function {
+        self.functions()[index][0].clone()
+    }
+
+    fn rounded(&self, index: usize) -> Function {
+        self.functions()[index][1].clone()
+    }
+}
+
+/// The constants of an effect's choices.
+fn constants(effect: &Effect) -> String {
+    let mut text = String::new();
+    for field in &effect.fields {
+        if let ValueType::Choice(words) = &field.value_type {
+            for (index, word) in words.iter().enumerate() {
+                let name = constant_name(&effect.name, &field.name, word);
+                writeln!(text, "const {name} = {index}u;").expect("writing to a string");
+            }
+        }
+    }
+    text
+}
+
+/// Does a text read of a corner what its triangle alone has?
+pub fn reads_triangle(tokens: &[Token<'_>]) -> bool {
+    let members = ["flat_normal", "center", "arm", "center_screen", "triangle"];
+    tokens
+        .windows(2)
+        .any(|pair| pair[0].text == "." && members.contains(&pair[1].text))
+}
+
+/// The members of the surface that a text reads: those of names that are declared as surfaces, but
+/// not what is only assigned to.
+fn surface_inputs(tokens: &[Token<'_>]) -> Vec<SurfaceInput> {
+    let text = |index: usize| tokens.get(index).map_or("", |token| token.text);
+    let mut surfaces: Vec<&str> = Vec::new();
+    let mut read: Vec<&str> = Vec::new();
+    for (index, token) in tokens.iter().enumerate() {
+        let [next, after] = [1, 2].map(|ahead| text(index + ahead));
+        if token.text == "fn" {
+            surfaces.clear();
+        } else if next == ":" && after == "Surface" {
+            surfaces.push(token.text);
+        } else if next == "=" && surfaces.contains(&after) && text(index + 3) == ";" {
+            surfaces.push(token.text);
+        } else if next == "." && surfaces.contains(&token.text) {
+            let is_assigned = text(index + 3) == "=" && text(index + 4) != "=";
+            if !is_assigned {
+                read.push(after);
+            }
+        }
+    }
+    SurfaceInput::ALL
+        .into_iter()
+        .filter(|input| read.contains(&input.member()))
+        .collect()
+}
+
+/// A text of WGSL with spaces in place of what only the lab knows: the attributes of parameters and
+/// functions.
+pub fn without_attributes(text: &str) -> Cow<'_, str> {
+    let tokens = tokens(text);
+    let is_ours = |name: &str| attributes::NAMES.contains(&name) || OF_FUNCTIONS.contains(&name);
+    let mut blanked: Option<Vec<u8>> = None;
+    for (at, pair) in tokens.windows(2).enumerate() {
+        if pair[0].text != "@" || !is_ours(pair[1].text) {
+            continue;
+        }
+        let last = match tokens.get(at + 2) {
+            Some(open) if open.text == "(" => tokens[closing(&tokens, at + 2)],
+            _ => pair[1],
+        };
+        let bytes = blanked.get_or_insert_with(|| text.as_bytes().to_vec());
+        bytes[pair[0].offset..last.end()]
+            .iter_mut()
+            .filter(|byte| **byte != b'\n')
+            .for_each(|byte| *byte = b' ');
+    }
+    blanked
+        .and_then(|bytes| String::from_utf8(bytes).ok())
+        .map_or(Cow::Borrowed(text), Cow::Owned)
+}
