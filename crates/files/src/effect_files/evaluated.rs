@@ -5,7 +5,10 @@ use std::sync::Arc;
 
 use naga::valid::{ValidationFlags, Validator};
 
-use super::twin::{self, Function};
+use super::{
+    picture_twin,
+    twin::{self, Function},
+};
 use crate::{
     effects::{
         Effect,
@@ -83,7 +86,11 @@ pub fn evaluated_in(
     }
     if let Some(hook) = hooks.image {
         let function = function(Chain::Image, precision)?;
-        hooks.image = Some(twin::image(function.clone(), function, hook.reads_previous));
+        hooks.image = Some(picture_twin::image(
+            function.clone(),
+            function,
+            hook.reads_previous,
+        ));
     }
     if let Some(hook) = hooks.passes {
         let functions = (0..hook.passes.len())
@@ -92,7 +99,11 @@ pub fn evaluated_in(
                 Function::new(&module, text, &name, effect, precision)
             })
             .collect::<Result<Vec<_>, _>>()?;
-        hooks.passes = Some(twin::passes(hook.passes, functions.clone(), functions));
+        hooks.passes = Some(picture_twin::passes(
+            hook.passes,
+            functions.clone(),
+            functions,
+        ));
     }
     Ok(hooks)
 }

@@ -12,7 +12,9 @@ mod rewrite;
 mod soundness;
 mod template;
 
-use rasterlab_model::effects::text::{declaration, error, parameters, tokens, twin, words};
+use rasterlab_model::effects::text::{
+    declaration, error, parameters, picture_twin, tokens, twin, words,
+};
 
 pub use self::{
     catalog::{Catalog, CustomEffect},

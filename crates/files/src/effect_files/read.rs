@@ -10,7 +10,7 @@ use super::{
     check::{self, Parts},
     declaration::{self, Author},
     error::{EffectError, Text},
-    images, rewrite,
+    images, picture_twin, rewrite,
     twin::{self, Function},
     words,
 };
@@ -267,7 +267,7 @@ fn read_anew(
             .tokens
             .iter()
             .any(|token| token.text == "image_previous");
-        hooks.image = Some(twin::image(
+        hooks.image = Some(picture_twin::image(
             function(name, Precision::Double)?,
             function(name, Precision::Single)?,
             reads_previous,
@@ -278,7 +278,7 @@ fn read_anew(
             let names = source.functions.passes.iter();
             names.map(|name| function(name, precision)).collect()
         };
-        hooks.passes = Some(twin::passes(
+        hooks.passes = Some(picture_twin::passes(
             declaration.passes.clone(),
             all(Precision::Double)?,
             all(Precision::Single)?,

@@ -13,8 +13,9 @@ use super::{
     draw_order::ranks,
     layers::LayerInput,
     sample_rules::SampleTests,
+    shading::{encoded, shade_runs},
     shadow::Light,
-    surface::{SurfaceTriangle, encoded, shade_runs},
+    surface::SurfaceTriangle,
     triangles::OrientedTriangle,
 };
 use crate::{

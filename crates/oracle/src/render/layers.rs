@@ -10,8 +10,9 @@ use super::{
     draw_order::ranks,
     glass::{glass_colors, glass_layers},
     sample_rules::SampleTests,
+    shading::encoded,
     shadow::Light,
-    surface::{SurfaceTriangle, encoded},
+    surface::SurfaceTriangle,
     triangles::OrientedTriangle,
 };
 use crate::{

@@ -28,6 +28,7 @@ pub mod material;
 pub mod passes;
 pub mod rays;
 pub mod resolve;
+pub mod shading;
 pub mod shadow;
 pub mod surface;
 pub mod tangents;

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use super::{
     super::shot::Shot,
     resolve::{PictureTables, ResolveInput, bytes},
-    surface::TOGETHER,
+    shading::TOGETHER,
 };
 use crate::{
     effects::hooks::{Image, ImageAt, Lens, PassInput, Picture, Signs},

@@ -6,8 +6,8 @@ use super::{
     super::shot::Shot,
     clip, deform,
     records::fill_records,
+    shading::TOGETHER,
     snap::{ClipPosition, snap},
-    surface::TOGETHER,
     vertex::{Corner, VertexEvaluator},
 };
 use crate::{

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 
 use super::{
     super::{perturbation::Perturbation, shot::Shot},
-    surface::{TOGETHER, surface_colors},
+    shading::{TOGETHER, surface_colors},
 };
 use crate::{
     effects::{

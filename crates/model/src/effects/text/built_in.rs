@@ -13,6 +13,7 @@ use super::{
     attributes,
     declaration::{self, Author, Declaration, OF_FUNCTIONS},
     error::{EffectError, Text},
+    picture_twin,
     tokens::{Token, closing, tokens},
     twin::{self, Function},
 };
@@ -111,8 +112,9 @@ fn hooks(effect: &Effect, declaration: &Declaration<'_>) -> Hooks {
             .any(|token| token.text == "image_previous");
         let (text, known) = (text(vec![name.clone()]), OnceLock::new());
         let finish = move |pixels: &mut [Pixel], picture: &Picture<'_>, words: &[u32]| {
-            let hook: &ImageHook =
-                known.get_or_init(|| twin::image(text.exact(0), text.rounded(0), reads_previous));
+            let hook: &ImageHook = known.get_or_init(|| {
+                picture_twin::image(text.exact(0), text.rounded(0), reads_previous)
+            });
             (hook.finish)(pixels, picture, words)
         };
         hooks.image = Some(ImageHook {
@@ -131,7 +133,7 @@ fn hooks(effect: &Effect, declaration: &Declaration<'_>) -> Hooks {
             let hook: &PassHook = known.get_or_init(|| {
                 let [exact, rounded] = [LazyText::exact, LazyText::rounded]
                     .map(|functions| (0..count).map(|pass| functions(&text, pass)).collect());
-                twin::passes(Vec::new(), exact, rounded)
+                picture_twin::passes(Vec::new(), exact, rounded)
             });
             (hook.run)(index, pixels, words)
         };

@@ -10,6 +10,7 @@ pub mod error;
 mod functions;
 mod member;
 pub mod parameters;
+pub mod picture_twin;
 pub mod tokens;
 pub mod twin;
 pub mod words;

@@ -9,14 +9,14 @@ use std::{
     sync::{Arc, Weak},
 };
 
-use glam::{DVec2, DVec3, DVec4};
+use glam::{DVec3, DVec4};
 
 use crate::{
     effects::{
         Effect,
         hooks::{
-            ErrorBound, ImageAt, ImageHook, ImagePass, PassHook, Picture, Pixel, ROUNDING, Sample,
-            SampleHook, SetupFunction, Surface, SurfaceFunction, TriangleSetup, Vertex, VertexHook,
+            ErrorBound, ROUNDING, Sample, SampleHook, SetupFunction, Surface, SurfaceFunction,
+            TriangleSetup, Vertex, VertexHook,
         },
         image_file::ImageFile,
     },
@@ -107,7 +107,7 @@ impl Function {
     /// Evaluates the function for at most [`LANES`] samples, given the parameter words: `write`
     /// writes the arguments of all, `read` reads the results into the samples. Those for which it
     /// does not end are `left` alone.
-    fn run<S>(
+    pub(super) fn run<S>(
         &self,
         samples: &mut [S],
         words: &[u32],
@@ -169,7 +169,7 @@ impl Function {
 
 /// Writes the scalars of a struct in the order in which it declares them, those of all samples
 /// together.
-struct Inputs<'a, S> {
+pub(super) struct Inputs<'a, S> {
     program: &'a Program,
     registers: &'a Registers,
     samples: &'a [S],
@@ -177,7 +177,7 @@ struct Inputs<'a, S> {
 }
 
 impl<S> Inputs<'_, S> {
-    fn words<const N: usize>(&mut self, of: impl Fn(&S) -> [Word; N]) -> &mut Self {
+    pub(super) fn words<const N: usize>(&mut self, of: impl Fn(&S) -> [Word; N]) -> &mut Self {
         let rows: [_; N] =
             std::array::from_fn(|word| self.program.argument(self.registers, self.next + word));
         self.next += N;
@@ -194,17 +194,17 @@ impl<S> Inputs<'_, S> {
         self
     }
 
-    fn floats<const N: usize>(&mut self, of: impl Fn(&S) -> [f64; N]) -> &mut Self {
+    pub(super) fn floats<const N: usize>(&mut self, of: impl Fn(&S) -> [f64; N]) -> &mut Self {
         self.words(|sample| of(sample).map(Word::from_f64))
     }
 
-    fn whole<const N: usize>(&mut self, of: impl Fn(&S) -> [u32; N]) -> &mut Self {
+    pub(super) fn whole<const N: usize>(&mut self, of: impl Fn(&S) -> [u32; N]) -> &mut Self {
         self.words(|sample| of(sample).map(Word::from_u32))
     }
 }
 
 /// Reads scalars in the same order.
-struct Outputs<'a, S> {
+pub(super) struct Outputs<'a, S> {
     program: &'a Program,
     registers: &'a Registers,
     samples: &'a mut [S],
@@ -214,7 +214,7 @@ struct Outputs<'a, S> {
 
 impl<S> Outputs<'_, S> {
     /// Leaves what the function has not changed as it was.
-    fn words<T, const N: usize>(
+    pub(super) fn words<T, const N: usize>(
         &mut self,
         of: impl for<'s> Fn(&'s mut S) -> &'s mut [T; N],
         value: impl Fn(Word) -> T,
@@ -233,23 +233,23 @@ impl<S> Outputs<'_, S> {
         self
     }
 
-    fn floats<const N: usize>(
+    pub(super) fn floats<const N: usize>(
         &mut self,
         of: impl for<'s> Fn(&'s mut S) -> &'s mut [f64; N],
     ) -> &mut Self {
         self.words(of, Word::to_f64)
     }
 
-    fn float(&mut self, of: impl for<'s> Fn(&'s mut S) -> &'s mut f64) -> &mut Self {
+    pub(super) fn float(&mut self, of: impl for<'s> Fn(&'s mut S) -> &'s mut f64) -> &mut Self {
         self.floats(|sample| array::from_mut(of(sample)))
     }
 
-    fn whole(&mut self, of: impl for<'s> Fn(&'s mut S) -> &'s mut u32) -> &mut Self {
+    pub(super) fn whole(&mut self, of: impl for<'s> Fn(&'s mut S) -> &'s mut u32) -> &mut Self {
         self.words(|sample| array::from_mut(of(sample)), Word::to_u32)
     }
 
     /// Passes over words.
-    fn skip(&mut self, words: usize) -> &mut Self {
+    pub(super) fn skip(&mut self, words: usize) -> &mut Self {
         self.next += words;
         self
     }
@@ -264,7 +264,7 @@ pub fn lengths(fields: &[Arc<Field>]) -> impl Iterator<Item = &Arc<Field>> {
 
 /// `values`, moved by `strength` times their largest magnitude, each up or down by a hash of its
 /// `index`. 0 changes nothing.
-fn perturbed<const N: usize>(values: [f64; N], index: u32, strength: f64) -> [f64; N] {
+pub(super) fn perturbed<const N: usize>(values: [f64; N], index: u32, strength: f64) -> [f64; N] {
     if strength == 0.0 {
         return values;
     }
@@ -282,7 +282,7 @@ fn perturbed<const N: usize>(values: [f64; N], index: u32, strength: f64) -> [f6
 }
 
 /// How much inputs are moved to a side of a step.
-fn strength(step_offset: f64) -> f64 {
+pub(super) fn strength(step_offset: f64) -> f64 {
     if step_offset == 0.0 {
         0.0
     } else {
@@ -292,7 +292,7 @@ fn strength(step_offset: f64) -> f64 {
 
 /// Hands samples to `run` that are evaluated alike: in f32, as `rounded`, to one side of a step, else
 /// as `exact`.
-fn each_side<'f, S>(
+pub(super) fn each_side<'f, S>(
     samples: &mut [S],
     [exact, rounded]: [&'f Function; 2],
     step_offset: impl Fn(&S) -> f64,
@@ -406,160 +406,6 @@ impl Host for ImageFileHost<'_> {
                 result.copy_from_slice(&texel.to_array().map(Word::from_f64));
             }
         }
-    }
-}
-
-/// Answers what an image effect asks of the picture at these pixels.
-struct PictureHost<'a>(&'a Picture<'a>, &'a [usize]);
-
-impl Host for PictureHost<'_> {
-    fn external(&mut self, index: usize, lane: usize, arguments: &[Word], result: &mut [Word]) {
-        let Self(picture, pixels) = self;
-        let at = || {
-            (
-                i64::from(arguments[0].to_i32()),
-                i64::from(arguments[1].to_i32()),
-            )
-        };
-        let pixel = pixels.get(lane).copied().unwrap_or(0);
-        let row = pixel as u32 / picture.width;
-        match index {
-            0 => result[0] = Word::from_bool(picture.has(at().0, at().1)),
-            1 => {
-                let (id, key, draw) = picture.at(at().0, at().1);
-                result.copy_from_slice(&[id.unwrap_or(u32::MAX), key, draw].map(Word::from_u32));
-            }
-            2 => result.copy_from_slice(&picture.background(row).to_array().map(Word::from_f64)),
-            3 => result.copy_from_slice(&[picture.width, picture.height].map(Word::from_u32)),
-            _ => {
-                let background = picture.background[row as usize].map(u32::from);
-                let bytes = picture
-                    .previous
-                    .map_or(background, |previous| previous[pixel].map(u32::from));
-                result.copy_from_slice(&bytes.map(Word::from_u32));
-            }
-        }
-    }
-}
-
-/// The image hook, in f32 to one side of a step as [`surface`].
-pub fn image(exact: Function, rounded: Function, reads_previous: bool) -> ImageHook {
-    let finish = move |pixels: &mut [Pixel], picture: &Picture<'_>, words: &[u32]| {
-        let sides = [&exact, &rounded];
-        each_side(
-            pixels,
-            sides,
-            |q| q.step_offset,
-            |together, function| {
-                let index = |q: &Pixel| q.y as usize * picture.width as usize + q.x as usize;
-                let indices: Vec<usize> = together.iter().map(index).collect();
-                function.run(
-                    together,
-                    words,
-                    &mut PictureHost(picture, &indices),
-                    |inputs| {
-                        inputs
-                            .floats(|q| perturbed(q.color.to_array(), 0, strength(q.step_offset)))
-                            .whole(|q| [q.x, q.y]);
-                    },
-                    |outputs| {
-                        outputs
-                            .floats(|q| q.color.as_mut())
-                            .whole(|q| &mut q.x)
-                            .whole(|q| &mut q.y);
-                    },
-                    |q| q.color = DVec4::NAN,
-                );
-            },
-        );
-    };
-    ImageHook {
-        reads_previous,
-        finish: Arc::new(finish),
-    }
-}
-
-/// Answers what a pass asks of the picture and of the pass before it.
-struct PassHost<'a>(&'a [ImageAt<'a>]);
-
-impl Host for PassHost<'_> {
-    fn external(&mut self, index: usize, lane: usize, arguments: &[Word], result: &mut [Word]) {
-        let at = &self.0[lane];
-        let pixel = || [0, 1].map(|axis| i64::from(arguments[axis].to_i32()));
-        let place = || DVec2::new(arguments[0].to_f64(), arguments[1].to_f64());
-        let color = match index {
-            5 => at.color(pixel()[0], pixel()[1]),
-            6 => at.color_at(place()),
-            7 => at.last(pixel()[0], pixel()[1]),
-            8 => at.last_at(place()),
-            9 => {
-                result[0] = Word::from_f64(at.depth_m(pixel()[0], pixel()[1]));
-                return;
-            }
-            10 => {
-                result[0] = Word::from_f64(at.input.lens.meters(arguments[0].to_f64()));
-                return;
-            }
-            11 => {
-                result[0] = Word::from_f64(at.input.lens.pixel_size_m(arguments[0].to_f64()));
-                return;
-            }
-            12 => {
-                let normal = at.normal(pixel()[0], pixel()[1]);
-                result.copy_from_slice(&normal.to_array().map(Word::from_f64));
-                return;
-            }
-            13 => {
-                let direction = at.direction(place());
-                result.copy_from_slice(&direction.to_array().map(Word::from_f64));
-                return;
-            }
-            14 => at.kept(pixel()[0], pixel()[1]),
-            15 => at.kept_at(place()),
-            _ => {
-                return PictureHost(at.input.picture, &[]).external(index, lane, arguments, result);
-            }
-        };
-        result.copy_from_slice(&color.to_array().map(Word::from_f64));
-    }
-}
-
-/// The passes of an effect, each evaluated in f64, and in f32 to one side of a step as
-/// [`surface`].
-pub fn passes(passes: Vec<ImagePass>, exact: Vec<Function>, rounded: Vec<Function>) -> PassHook {
-    let run = move |index: usize, pixels: &[ImageAt<'_>], words: &[u32]| {
-        let mut written: Vec<(ImageAt<'_>, DVec4)> =
-            pixels.iter().map(|at| (*at, DVec4::NAN)).collect();
-        let sides = [&exact[index], &rounded[index]];
-        let mut next = 0;
-        each_side(
-            &mut written,
-            sides,
-            |(at, _)| at.step_offset,
-            |together, function| {
-                let mut host = PassHost(&pixels[next..next + together.len()]);
-                next += together.len();
-                function.run(
-                    together,
-                    words,
-                    &mut host,
-                    |inputs| {
-                        inputs
-                            .whole(|(at, _)| [at.x as u32, at.y as u32])
-                            .whole(|(at, _)| [at.size[0], at.size[1], at.scale]);
-                    },
-                    |outputs| {
-                        outputs.floats(|(_, color)| color.as_mut());
-                    },
-                    |_| {},
-                );
-            },
-        );
-        written.into_iter().map(|(_, color)| color).collect()
-    };
-    PassHook {
-        passes,
-        run: Arc::new(run),
     }
 }
 
