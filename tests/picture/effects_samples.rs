@@ -361,7 +361,7 @@ fn kernels_with_a_mistake_are_caught(reach: Reach) {
     let mutants = [
         (
             "another hash",
-            "hash(hash(s.triangle ^ p.spread.seed) ^ pixel)",
+            "hash(hash(s.triangle ^ p.seed) ^ pixel)",
             "hash(s.triangle ^ pixel)",
             dissolved(Mode::Hash, 0.5),
         ),
