@@ -32,7 +32,7 @@ fn copy_terse(from: &Path, to: &Path, is_told: bool) -> io::Result<()> {
             continue;
         }
         let terse = |line: &str| match line.split_once("//") {
-            Some((code, _)) if !line.starts_with("//@") && !(is_told && code.trim().is_empty()) => {
+            Some((code, _)) if !(line.starts_with("//@") || is_told && code.trim().is_empty()) => {
                 format!("{}\n", code.trim_end())
             }
             _ => format!("{line}\n"),

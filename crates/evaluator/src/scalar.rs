@@ -48,7 +48,7 @@ pub(crate) trait Operands: Sized {
     }
 
     #[inline(always)]
-    fn from_bits(self, f: impl Fn(u32) -> f64) {
+    fn float_of(self, f: impl Fn(u32) -> f64) {
         self.each(|a, _, _| Word::from_f64(f(a.to_u32())));
     }
 }
@@ -127,22 +127,22 @@ pub(crate) fn evaluate<const SINGLE: bool>(op: Op, o: impl Operands) {
         Op::FirstTrailing => o.words(|a, _, _| if a == 0 { u32::MAX } else { a.trailing_zeros() }),
         Op::IntFromFloat => o.bits(|a| to_i32(a).cast_unsigned()),
         Op::UintFromFloat => o.bits(to_u32),
-        Op::FloatFromInt => o.from_bits(|a| r(f64::from(a.cast_signed()))),
-        Op::FloatFromUint => o.from_bits(|a| r(f64::from(a))),
+        Op::FloatFromInt => o.float_of(|a| r(f64::from(a.cast_signed()))),
+        Op::FloatFromUint => o.float_of(|a| r(f64::from(a))),
         Op::BoolFromFloat => o.compare(|a, _| a != 0.0),
         Op::BoolFromWord => o.words(|a, _, _| u32::from(a != 0)),
         Op::BitsFromFloat => o.bits(|a| (a as f32).to_bits()),
-        Op::FloatFromBits => o.from_bits(|a| f64::from(f32::from_bits(a))),
+        Op::FloatFromBits => o.float_of(|a| f64::from(f32::from_bits(a))),
         Op::Snorm8 => o.bits(|a| normalized(a, -1.0, 127.0).cast_unsigned() & 0xff),
         Op::Unorm8 => o.bits(|a| normalized(a, 0.0, 255.0).cast_unsigned()),
         Op::Snorm16 => o.bits(|a| normalized(a, -1.0, 32767.0).cast_unsigned() & 0xffff),
         Op::Unorm16 => o.bits(|a| normalized(a, 0.0, 65535.0).cast_unsigned()),
         Op::Half => o.bits(to_half),
-        Op::FromSnorm8 => o.from_bits(|a| r((f64::from(a as u8 as i8) / 127.0).max(-1.0))),
-        Op::FromUnorm8 => o.from_bits(|a| r(f64::from(a as u8) / 255.0)),
-        Op::FromSnorm16 => o.from_bits(|a| r((f64::from(a as u16 as i16) / 32767.0).max(-1.0))),
-        Op::FromUnorm16 => o.from_bits(|a| r(f64::from(a as u16) / 65535.0)),
-        Op::FromHalf => o.from_bits(from_half),
+        Op::FromSnorm8 => o.float_of(|a| r((f64::from(a as u8 as i8) / 127.0).max(-1.0))),
+        Op::FromUnorm8 => o.float_of(|a| r(f64::from(a as u8) / 255.0)),
+        Op::FromSnorm16 => o.float_of(|a| r((f64::from(a as u16 as i16) / 32767.0).max(-1.0))),
+        Op::FromUnorm16 => o.float_of(|a| r(f64::from(a as u16) / 65535.0)),
+        Op::FromHalf => o.float_of(from_half),
         Op::AddF => o.floats(|a, b, _| r(a + b)),
         Op::SubF => o.floats(|a, b, _| r(a - b)),
         Op::MulF => o.floats(|a, b, _| r(a * b)),

@@ -119,8 +119,10 @@ impl Random {
     }
 }
 
+type Operator = (&'static str, fn(i32, i32) -> i32);
+
 /// Operators on numbers, and what they do.
-pub const OPERATORS: [(&str, fn(i32, i32) -> i32); 15] = [
+pub const OPERATORS: [Operator; 15] = [
     ("(A + B)", i32::wrapping_add),
     ("(A - B)", i32::wrapping_sub),
     ("(A * B)", i32::wrapping_mul),

@@ -231,9 +231,9 @@ fn surface_inputs(tokens: &[Token<'_>]) -> Vec<SurfaceInput> {
         let [next, after] = [1, 2].map(|ahead| text(index + ahead));
         if token.text == "fn" {
             surfaces.clear();
-        } else if next == ":" && after == "Surface" {
-            surfaces.push(token.text);
-        } else if next == "=" && surfaces.contains(&after) && text(index + 3) == ";" {
+        } else if next == ":" && after == "Surface"
+            || next == "=" && surfaces.contains(&after) && text(index + 3) == ";"
+        {
             surfaces.push(token.text);
         } else if next == "." && surfaces.contains(&token.text) {
             let is_assigned = text(index + 3) == "=" && text(index + 4) != "=";

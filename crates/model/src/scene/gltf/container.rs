@@ -100,7 +100,7 @@ fn split_glb<'a>(
             "the file is cut off after {there} of {stated} bytes"
         ));
         // What the missing chunk would hold is missing with it.
-        binary = binary.or_else(|| Some(Bytes::Memory(Cow::Borrowed(&[]))));
+        binary = binary.or(Some(Bytes::Memory(Cow::Borrowed(&[]))));
     } else if length != size {
         notes.fault(|| format!("the GLB header states {length} bytes, but the file has {size}"));
     }
