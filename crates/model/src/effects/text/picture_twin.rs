@@ -43,7 +43,7 @@ impl Host for PictureHost<'_> {
     }
 }
 
-/// The image hook, in f32 to one side of a step as [`surface`].
+/// The image hook, in f32 to one side of a step as [`super::twin::surface`].
 pub fn image(exact: Function, rounded: Function, reads_previous: bool) -> ImageHook {
     let finish = move |pixels: &mut [Pixel], picture: &Picture<'_>, words: &[u32]| {
         let sides = [&exact, &rounded];
@@ -126,7 +126,7 @@ impl Host for PassHost<'_> {
 }
 
 /// The passes of an effect, each evaluated in f64, and in f32 to one side of a step as
-/// [`surface`].
+/// [`super::twin::surface`].
 pub fn passes(passes: Vec<ImagePass>, exact: Vec<Function>, rounded: Vec<Function>) -> PassHook {
     let run = move |index: usize, pixels: &[ImageAt<'_>], words: &[u32]| {
         let mut written: Vec<(ImageAt<'_>, DVec4)> =
