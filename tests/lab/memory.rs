@@ -97,6 +97,7 @@ fn child_that_runs_an_extreme_case() {
     returns(extremes);
 }
 
+/// Its two children measure whole jobs, 28 s of processor time on llvmpipe: `.ci/full` runs it.
 #[test]
 #[ignore = "slow: .ci/full"]
 fn memory_after_a_long_job_is_about_what_it_was_before() {

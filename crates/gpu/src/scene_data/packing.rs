@@ -109,6 +109,41 @@ fn refusal(place: [f32; 3]) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::builtin;
+
+    #[test]
+    fn no_lane_is_further_from_its_place_than_half_a_step() {
+        for query in ["teapot?tess=3", "cube-wall", "knot?tess=2"] {
+            let scene = builtin::build(query).expect("a builtin");
+            for bits in [10, 16] {
+                let packing = Packing::new(&scene, bits);
+                assert_eq!(4 * packing.words.len() as u64, bytes_of(&scene, bits));
+                for (primitive, packed) in scene.primitives.iter().zip(&packing.boxes) {
+                    for vertex in 0..primitive.vertex_count() {
+                        let words = &packing.words
+                            [(packed.first_word + words_of(bits) * vertex) as usize..];
+                        let steps = match bits {
+                            10 => [words[0] & 1023, words[0] >> 10 & 1023, words[0] >> 20],
+                            _ => [words[0] & 0xffff, words[0] >> 16, words[1]],
+                        };
+                        let place = primitive.position(&scene, vertex);
+                        for axis in 0..3 {
+                            let [origin, step] =
+                                [packed.origin[axis], packed.step[axis]].map(f64::from);
+                            let off = (origin + step * f64::from(steps[axis])
+                                - f64::from(place[axis]))
+                            .abs();
+                            // The step itself is rounded to a float.
+                            assert!(
+                                off <= 0.5 * step + 1e-6 * (step * 65_535.0).max(origin.abs()),
+                                "{query}, {bits} bits: {off} of {step}"
+                            );
+                        }
+                    }
+                }
+            }
+        }
+    }
 
     #[test]
     fn what_is_refused_stays_refused() {

@@ -267,6 +267,45 @@ mod tests {
     }
 
     #[test]
+    fn box_shadow_casters_and_triangle_ids_are_those_of_the_scene_alone() {
+        let ground = Ground {
+            size: 5.0,
+            ..Ground::default()
+        };
+        for query in ["teapot?tess=2", "tentacle?tess=2", "walker?tess=1"] {
+            let alone = builtin::build(query).unwrap();
+            let scene = alone.clone().on_ground(&ground);
+            assert_eq!(
+                (scene.bounds(), scene.content_bounds()),
+                (alone.bounds(), alone.bounds()),
+                "{query}"
+            );
+            assert!(scene.bounds_with_ground().radius() > 3.0 * alone.bounds().radius());
+            assert_eq!(scene.shadow_casters(), alone.instances, "{query}");
+            assert_eq!(
+                scene.instances[..alone.instances.len()],
+                alone.instances,
+                "{query}"
+            );
+            // In a room too.
+            let inside = alone.clone().on_ground(&ground).in_room(2.0);
+            assert_eq!(
+                (inside.content_bounds(), inside.shadow_casters()),
+                (alone.bounds(), &alone.instances[..]),
+                "{query}"
+            );
+            let floor = inside.primitives[inside.instances.last().unwrap().primitive]
+                .bounds
+                .min
+                .y;
+            assert!(
+                floor < inside.bounds_of(inside.ground_instances()).min.y,
+                "{query}: the ground lies on the floor"
+            );
+        }
+    }
+
+    #[test]
     fn nothing_needs_no_ground() {
         assert_eq!(
             Scene::default().on_ground(&Ground::default()),

@@ -172,6 +172,30 @@ mod tests {
     }
 
     #[test]
+    fn a_directional_light_is_the_same_everywhere() {
+        let sun = above(LightKind::Directional, Some(1.0));
+        for place in [DVec3::ZERO, DVec3::new(1e6, -40.0, 3.0)] {
+            near(&sun.arriving(place), DVec3::Y, 1.0);
+        }
+    }
+
+    #[test]
+    fn a_point_falls_off_with_the_square_of_the_distance_and_ends_at_its_range() {
+        let endless = above(LightKind::Point, None);
+        near(&endless.arriving(DVec3::ZERO), DVec3::Y, 0.25);
+        near(&endless.arriving(8.0 * DVec3::NEG_Y), DVec3::Y, 0.01);
+        near(&endless.arriving(3.0 * DVec3::Y), DVec3::NEG_Y, 1.0);
+        let aside = DVec3::new(3.0, 2.0, -4.0);
+        near(&endless.arriving(aside), DVec3::new(-0.6, 0.0, 0.8), 0.04);
+        let ends = above(LightKind::Point, Some(4.0));
+        near(&ends.arriving(DVec3::ZERO), DVec3::Y, 0.25 * 15.0 / 16.0);
+        near(&ends.arriving(2.0 * DVec3::NEG_Y), DVec3::Y, 0.0);
+        near(&ends.arriving(9.0 * DVec3::NEG_Y), DVec3::Y, 0.0);
+        let inside = endless.arriving(2.0 * DVec3::Y);
+        assert!(inside.light.is_finite() && inside.toward == DVec3::ZERO);
+    }
+
+    #[test]
     fn a_spot_is_whole_inside_its_inner_cone_and_dark_outside_the_outer_one() {
         let spot = LightKind::Spot {
             inner: FRAC_PI_6,

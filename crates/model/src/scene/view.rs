@@ -306,6 +306,28 @@ mod tests {
     }
 
     #[test]
+    fn framing_shows_every_corner_of_the_box() {
+        for (aspect, width, height) in [(2.0, 200, 100), (0.5, 100, 200)] {
+            let camera = Camera::framing(&unit_box(), DVec3::new(-1.0, -0.5, -2.0), aspect);
+            let view = View::new(
+                &camera,
+                width,
+                height,
+                &unit_box(),
+                DMat4::IDENTITY,
+                [0.0; 4],
+            );
+            for corner in unit_box().corners() {
+                let clip = view.clip_from_world * corner.extend(1.0);
+                assert!(
+                    clip.x.abs() < clip.w && clip.y.abs() < clip.w && clip.z < clip.w,
+                    "{clip}"
+                );
+            }
+        }
+    }
+
+    #[test]
     fn orthographic_depth_runs_from_one_to_zero_through_the_scene() {
         let camera = Camera {
             projection: Projection::Orthographic { height_m: 4.0 },

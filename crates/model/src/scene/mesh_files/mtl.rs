@@ -26,7 +26,7 @@ use crate::scene::{
 /// Most material files of a line.
 const MOST_FILES: usize = 64;
 
-/// Most options of a texture, and words that may be values of one that nobody knows.
+/// Most options of a texture, and words that may be values of an unknown one.
 const MOST_OPTIONS: usize = 16;
 
 /// Options of textures, with the most values that follow them.
@@ -54,7 +54,7 @@ const OTHER_MAPS: &[&str] = &[
 
 /// A texture as a line describes it.
 struct Map {
-    /// Names that its file may have, the likeliest first: what follows an option that nobody knows
+    /// Names that its file may have, the likeliest first: what follows an unknown option
     /// may begin with its values.
     names: Vec<String>,
     /// Texture coordinates are multiplied by the scale and moved by the offset, with v up.

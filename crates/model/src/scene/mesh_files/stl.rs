@@ -136,7 +136,7 @@ impl Reader {
                         }
                     },
                     "endfacet" if !is_broken => self.facet(at)?,
-                    // Its name follows, whatever words that has.
+                    // The name of the solid follows, which may contain keywords.
                     "endsolid" => break,
                     _ => {}
                 }

@@ -282,6 +282,47 @@ mod tests {
     use super::*;
 
     #[test]
+    fn legs_keep_their_length_and_bring_the_foot_to_its_goal() {
+        let rest = joints();
+        for gait in &GAITS {
+            for at in 0..200 {
+                let t = f64::from(at) / 200.0;
+                let (shift, turns) = pose_at(gait, &rest, t);
+                let mut frames: Vec<(DVec3, DQuat)> = Vec::new();
+                for (joint, turn) in rest.iter().zip(turns) {
+                    assert!(
+                        (turn.length() - 1.0).abs() < 1e-12,
+                        "{} {t}: {turn}",
+                        joint.name
+                    );
+                    let frame = if frames.is_empty() {
+                        (joint.at + shift, turn)
+                    } else {
+                        let (position, parent) = frames[joint.parent];
+                        (
+                            position + parent * (joint.at - rest[joint.parent].at),
+                            parent * turn,
+                        )
+                    };
+                    frames.push(frame);
+                }
+                for (leg, landing) in gait.landing.into_iter().enumerate() {
+                    let foot = SPINE.len() + 4 * leg + 3;
+                    let [ahead, up] = step(gait, leg % 2, t - landing).at;
+                    let goal = DVec3::new(rest[foot].at.x + ahead, up, rest[foot].at.z);
+                    assert!(
+                        frames[foot].0.distance(goal) < 1e-9,
+                        "{} {} {t}: {} {goal}",
+                        gait.name,
+                        rest[foot].name,
+                        frames[foot].0
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
     fn knees_point_ahead_and_elbows_back_and_no_leg_is_ever_stretched() {
         let rest = joints();
         for gait in &GAITS {
