@@ -105,7 +105,15 @@ pub fn run(common: &Common, args: &Verify, streams: &mut Streams) -> Result<Exit
     } else {
         streams.text(&text(&rows, backend.class()))?;
     }
-    for preset_file in &preset_files {
+    tell_notes(&preset_files, &rows, streams);
+    Ok(Exit::failed_if(
+        rows.iter().any(|row| !row.failures.is_empty()),
+    ))
+}
+
+/// Says of each row what its figures do not.
+fn tell_notes(preset_files: &[PresetFile], rows: &[Row], streams: &mut Streams) {
+    for preset_file in preset_files {
         let names = judged_by_own_text(&preset_file.preset).join(", ");
         if !names.is_empty() {
             streams.note(&format!(
@@ -158,9 +166,6 @@ pub fn run(common: &Common, args: &Verify, streams: &mut Streams) -> Result<Exit
             streams.note(&format!("{} with {}: {failure}", row.preset, row.option))
         })
     });
-    Ok(Exit::failed_if(
-        rows.iter().any(|row| !row.failures.is_empty()),
-    ))
 }
 
 /// The effects of a preset that have no independent twin: the oracle evaluates their own text in
