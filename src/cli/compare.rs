@@ -107,14 +107,15 @@ fn side(
             triangle_id: None,
         });
     }
-    let preset_file = open_as(common, what, args.size, None, None)?;
+    let mut preset_file = open_as(common, what, args.size, None, None)?;
     let backend = match backend {
         Some(backend) => backend,
         None => backend.insert(Backend::open(common, streams)?),
     };
+    let scene = scene_of(common, &mut preset_file, streams)?;
     let frame = backend.frame(
         &preset_file.preset,
-        &scene_of(common, &preset_file, streams)?,
+        &scene,
     )?;
     Ok(Side {
         size: [frame.width, frame.height],

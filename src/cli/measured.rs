@@ -65,10 +65,11 @@ pub fn subjects(
     }
     preset_files
         .into_iter()
-        .map(|preset_file| {
+        .map(|mut preset_file| {
+            let scene = scene_of(common, &mut preset_file, streams)?;
             Ok((
-                preset_file.clone(),
-                scene_of(common, &preset_file, streams)?,
+                preset_file,
+                scene,
             ))
         })
         .collect()

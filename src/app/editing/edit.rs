@@ -172,7 +172,11 @@ impl Session {
             .into_iter()
             .map(|point| turn.transform_point3(point))
             .collect();
-        camera_moves::framing(camera, &points, super::session::aspect(preset.output.size))
+        camera_moves::framing(
+            camera,
+            &points,
+            preset.frame(super::session::aspect(preset.output.size)),
+        )
     }
 
     /// Gives every parameter of the enabled effects that is neither locked nor animated a random

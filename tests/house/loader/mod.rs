@@ -6,6 +6,7 @@ mod accepted;
 mod compressed;
 mod corpus;
 mod far;
+mod first_looks;
 mod files;
 mod images;
 mod instancing;

@@ -15,6 +15,7 @@ use super::{
     punctual::SceneLight,
     rig::Rig,
     texture::Image,
+    up::UpAxis,
 };
 use crate::work::{Canceled, map_parts};
 
@@ -259,6 +260,8 @@ pub struct Scene {
     pub grounds: usize,
     /// The box of what the walls surround; none without walls.
     pub content: Option<Bounds>,
+    /// The axis of its file that is up.
+    pub up: UpAxis,
     /// Cameras that come with the scene.
     pub cameras: Vec<SceneCamera>,
     /// The picture of what surrounds it.

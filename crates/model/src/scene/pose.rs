@@ -320,7 +320,7 @@ impl State {
         for (node, local) in rig.nodes.iter().zip(&self.locals) {
             let parent = node
                 .parent
-                .map_or(DMat4::IDENTITY, |parent| scene_from_node[parent]);
+                .map_or_else(|| rig.turn.unwrap_or_default(), |parent| scene_from_node[parent]);
             scene_from_node.push(parent * local.matrix());
         }
         scene_from_node
