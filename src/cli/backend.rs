@@ -304,7 +304,10 @@ pub fn scene_with_warnings(
         return Err(CliError::usage(format!("{}: {fault}", scene.name))
             .during(format!("preset {}", preset_file.id)));
     }
-    let is_lit = common.set.iter().any(|set| set.trim_start().starts_with("studio.lights"));
+    let is_lit = common
+        .set
+        .iter()
+        .any(|set| set.trim_start().starts_with("studio.lights"));
     preset_file.settle(&scene, !is_lit);
     let file = preset_file.path.as_ref().map_or_else(
         || format!("{}.toml", preset_file.id),

@@ -113,10 +113,7 @@ fn side(
         None => backend.insert(Backend::open(common, streams)?),
     };
     let scene = scene_of(common, &mut preset_file, streams)?;
-    let frame = backend.frame(
-        &preset_file.preset,
-        &scene,
-    )?;
+    let frame = backend.frame(&preset_file.preset, &scene)?;
     Ok(Side {
         size: [frame.width, frame.height],
         color: frame.color,

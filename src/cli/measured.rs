@@ -67,10 +67,7 @@ pub fn subjects(
         .into_iter()
         .map(|mut preset_file| {
             let scene = scene_of(common, &mut preset_file, streams)?;
-            Ok((
-                preset_file,
-                scene,
-            ))
+            Ok((preset_file, scene))
         })
         .collect()
 }

@@ -86,7 +86,10 @@ pub fn run(common: &Common, args: &Sweep, streams: &mut Streams) -> Result<Exit,
         let preset = &cell.preset_file.preset;
         let shown = match scene.take().filter(|shown| shown.is_of(preset)) {
             Some(shown) => shown,
-            None => Shown::new(preset, scene_of(common, &mut cell.preset_file.clone(), streams)?),
+            None => Shown::new(
+                preset,
+                scene_of(common, &mut cell.preset_file.clone(), streams)?,
+            ),
         };
         let frame = backend
             .frame(preset, &shown.scene)

@@ -187,7 +187,7 @@ impl OpenPreset {
     pub fn orbit(&mut self, aside_deg: f64, up_deg: f64, closer: f64) {
         let [width, height] = self.file.preset.output.size;
         let aspect = f64::from(width.max(1)) / f64::from(height.max(1));
-        let mut preset = self.file.preset.in_meters(&self.scene).into_owned();
+        let mut preset = self.file.preset.metric(&self.scene).into_owned();
         let mut camera = preset.camera_for(&self.scene, aspect);
         orbit(&mut camera, -aside_deg.to_radians(), up_deg.to_radians());
         zoom(&mut camera, closer);

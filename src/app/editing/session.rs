@@ -203,7 +203,8 @@ impl Session {
     /// Did the user choose the look that is shown, which stays when another model is opened: a preset
     /// since the start, or other effects than it was opened with?
     pub fn has_chosen_look(&self) -> bool {
-        self.chose_look && !self.preset_file.is_plain() || self.as_filed().preset.stack != self.preset().stack
+        self.chose_look && !self.preset_file.is_plain()
+            || self.as_filed().preset.stack != self.preset().stack
     }
 
     pub fn undo_state(&self) -> UndoState {

@@ -317,11 +317,7 @@ pub fn cancel_loading(app: &mut App) {
 }
 
 /// The box of a scene has been found, or cannot be: opens what waits for it.
-pub fn take_bounds(
-    app: &mut App,
-    source: (SceneSource, UpAxis),
-    bounds: Result<Bounds, String>,
-) {
+pub fn take_bounds(app: &mut App, source: (SceneSource, UpAxis), bounds: Result<Bounds, String>) {
     if let Err(error) = &bounds {
         app.state.log.add(Level::Warning, error.clone());
     }

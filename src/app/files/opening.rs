@@ -1,7 +1,11 @@
 //! What is being opened: a preset that waits for its model, or for the boxes of scenes.
 
 use super::{command::Manner, scene_loader::SceneKey};
-use crate::{preset::SceneSource, preset_file::PresetFile, scene::{Bounds, UpAxis}};
+use crate::{
+    preset::SceneSource,
+    preset_file::PresetFile,
+    scene::{Bounds, UpAxis},
+};
 
 /// What was chosen and waits.
 pub struct Request {

@@ -572,7 +572,8 @@ fn land_look(look: &PresetFile, own: &PresetFile, scene: &Scene) -> Option<Prese
         true => look.fit_to(
             own,
             [
-                &preset_file::scene_bounds(&look.scene_source(), look.preset.parts.up, None).ok()?,
+                &preset_file::scene_bounds(&look.scene_source(), look.preset.parts.up, None)
+                    .ok()?,
                 &scene.content_bounds(),
             ],
             Some(scene),

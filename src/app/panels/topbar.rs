@@ -6,7 +6,6 @@ use egui::{self, Align, Layout, RichText, Sense, Ui, vec2};
 
 use super::anti_aliasing::anti_aliasing_ui;
 use crate::app::panels::panel::Panel;
-use crate::preset_file::{PLAIN, PresetFile};
 use crate::app::{
     picture::{
         measured::{error_line, time_line},
@@ -22,6 +21,7 @@ use crate::app::{
         theme::{self, ThemeChoice},
     },
 };
+use crate::preset_file::{PLAIN, PresetFile};
 
 /// The bar at the top: menus, the open preset, the adapter, and the cost and error of the picture.
 pub struct TopBar;

@@ -44,9 +44,21 @@ fn a_model_that_stands_on_another_plane_is_set_upright_told_once_and_kept() {
     let (mut file, scene) = opened(&path);
     assert_eq!((file.preset.parts.up, scene.up), (UpAxis::Z, UpAxis::Z));
     let bounds = scene.content_bounds();
-    assert!(bounds.min.distance(DVec3::new(-0.5, 0.0, -0.5)) < 1e-9, "{bounds:?}");
-    assert!(bounds.max.distance(DVec3::new(0.5, 3.0, 0.5)) < 1e-9, "{bounds:?}");
-    let told = |scene: &Scene| scene.notes.iter().filter(|note| note.contains("scene.up")).count();
+    assert!(
+        bounds.min.distance(DVec3::new(-0.5, 0.0, -0.5)) < 1e-9,
+        "{bounds:?}"
+    );
+    assert!(
+        bounds.max.distance(DVec3::new(0.5, 3.0, 0.5)) < 1e-9,
+        "{bounds:?}"
+    );
+    let told = |scene: &Scene| {
+        scene
+            .notes
+            .iter()
+            .filter(|note| note.contains("scene.up"))
+            .count()
+    };
     assert_eq!(told(&scene), 1);
     let ground = scene.bounds_of(scene.ground_instances());
     assert!((-0.01..0.0).contains(&ground.max.y), "{ground:?}");
@@ -69,11 +81,17 @@ fn a_model_that_stands_on_another_plane_is_set_upright_told_once_and_kept() {
 fn presets_and_gltf_files_are_not_turned_unless_they_say_so() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     written(folder.path(), "tower.obj", tower());
-    for (keys, up) in [("", DVec3::Z), ("up = \"z\"", DVec3::Y), ("up = \"-x\"", DVec3::Z)] {
+    for (keys, up) in [
+        ("", DVec3::Z),
+        ("up = \"z\"", DVec3::Y),
+        ("up = \"-x\"", DVec3::Z),
+    ] {
         let text = format!("schema = 2\n[scene]\npath = \"tower.obj\"\n{keys}\n");
         let path = written(folder.path(), "tower.toml", &text);
         let file = preset_file::load(&path).expect("a preset");
-        let bounds = load_scene(&file.preset, Some(&path)).expect("a scene").bounds();
+        let bounds = load_scene(&file.preset, Some(&path))
+            .expect("a scene")
+            .bounds();
         let size = bounds.max - bounds.min;
         assert_eq!(size.dot(up), 3.0, "{keys}: {bounds:?}");
     }
@@ -95,9 +113,18 @@ fn lights_of_hundreds_of_candelas_are_dimmed_in_the_plain_look_alone() {
         model.json["nodes"][1]["translation"] = json!([0.5, 0.5, height]);
         let path = written(folder.path(), "lit.glb", model.glb());
         let (file, scene) = opened(&path);
-        let lights = |preset: &Preset| preset.stack.get("studio").map(|studio| studio.number("lights"));
+        let lights = |preset: &Preset| {
+            preset
+                .stack
+                .get("studio")
+                .map(|studio| studio.number("lights"))
+        };
         let is_near = |value: Option<f64>| (value.unwrap() / dimmed - 1.0).abs() < 1e-6;
-        assert!(is_near(lights(&file.preset)), "{light}: {:?}", lights(&file.preset));
+        assert!(
+            is_near(lights(&file.preset)),
+            "{light}: {:?}",
+            lights(&file.preset)
+        );
         // Another look keeps what it says, and knows the number.
         let lamps = preset_file::open("lamps", &Folders::default()).expect("a preset");
         let mut landed = lamps.landed_on(&file, None);
@@ -105,7 +132,8 @@ fn lights_of_hundreds_of_candelas_are_dimmed_in_the_plain_look_alone() {
         assert_eq!(lights(&landed.preset), Some(1.0));
         assert_eq!(landed.preset.dimmed_lights(&scene).is_some(), dimmed < 1.0);
         // What a person has set stays.
-        let mut plain = preset_file::open(&path.to_string_lossy(), &Folders::default()).expect("it");
+        let mut plain =
+            preset_file::open(&path.to_string_lossy(), &Folders::default()).expect("it");
         plain.settle(&scene, false);
         assert_eq!(lights(&plain.preset), Some(1.0));
     }
@@ -119,15 +147,24 @@ fn a_camera_of_the_file_that_crops_the_model_is_known_and_can_be_left_out() {
         model.json["cameras"] = json!([{
             "name": "Closer", "type": "perspective", "perspective": { "yfov": 0.7, "znear": 0.01 }
         }]);
-        model.push("nodes", json!({ "camera": 0, "translation": [0.5, 0.5, away] }));
+        model.push(
+            "nodes",
+            json!({ "camera": 0, "translation": [0.5, 0.5, away] }),
+        );
         model.json["scenes"][0]["nodes"] = json!([0, 1]);
         let path = written(folder.path(), "seen.glb", model.glb());
         let (mut file, scene) = opened(&path);
-        let cropping = file.preset.cropping_camera(&scene).map(|camera| &*camera.name);
+        let cropping = file
+            .preset
+            .cropping_camera(&scene)
+            .map(|camera| &*camera.name);
         assert_eq!(cropping, crops.then_some("Closer"), "{away}");
         file.preset.scene_camera = NO_CAMERA.into();
         assert!(file.preset.check(&scene).is_ok());
         assert!(file.preset.cropping_camera(&scene).is_none());
-        assert_ne!(file.preset.camera_for(&scene, 1.0).eye, DVec3::new(0.5, 0.5, away));
+        assert_ne!(
+            file.preset.camera_for(&scene, 1.0).eye,
+            DVec3::new(0.5, 0.5, away)
+        );
     }
 }

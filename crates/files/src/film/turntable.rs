@@ -65,11 +65,12 @@ pub fn all_around(preset: &Preset, scene: &Scene) -> Option<Camera> {
     );
     // The camera goes around the axis of the scene.
     let axis = center.with_y(framed.target.y);
-    Some(Camera {
+    let around = Camera {
         eye: framed.eye + (axis - framed.target),
         target: axis,
         ..framed
-    })
+    };
+    Some(around.counted_from(preset.origin))
 }
 
 #[cfg(test)]

@@ -95,7 +95,11 @@ impl ModelFormat {
         let names = scene.named_nodes.iter().map(|node| node.name.as_str());
         match self.reader {
             Reader::Gltf => UpAxis::Y,
-            Reader::Mesh(_, usual) => UpAxis::guessed(&scene.bounds(), [&*scene.name].into_iter().chain(names), usual),
+            Reader::Mesh(_, usual) => UpAxis::guessed(
+                &scene.bounds(),
+                [&*scene.name].into_iter().chain(names),
+                usual,
+            ),
         }
     }
 

@@ -32,7 +32,9 @@ pub fn plain() -> &'static PresetFile {
     static FILE: LazyLock<PresetFile> = LazyLock::new(|| {
         let file = BUILTIN_DIR.get_file(format!("{PLAIN}.toml"));
         let entry = file.map(builtin_entry).expect("the gallery has it");
-        entry.preset_file.expect("it is valid, as every preset of the gallery")
+        entry
+            .preset_file
+            .expect("it is valid, as every preset of the gallery")
     });
     &FILE
 }

@@ -101,7 +101,7 @@ fn load_source(
             let format = ModelFormat::of(&path).unwrap_or(&MODEL_FORMATS[0]);
             let mut scene = format.load_variant(&path, variant)?;
             if *up != UpAxis::Auto {
-                return Ok(scene.turned_up(*up));
+                return Ok(scene.turned_up(*up).counted());
             }
             let up = format.guess_up(&scene);
             if up != UpAxis::Y {
@@ -110,7 +110,7 @@ fn load_source(
                     "its {up} is taken to be up, guessed from its format, its names and how it stands; scene.up says otherwise"
                 ));
             }
-            Ok(scene.turned_up(up))
+            Ok(scene.turned_up(up).counted())
         }
     }
 }

@@ -210,6 +210,9 @@ pub struct Preset {
     pub unit: LengthUnit,
     /// A polyline for effects that draw along lines; it turns with the scene.
     pub polyline: Arc<[[f32; 3]]>,
+    /// The point of the scene from which its points count, meters: the file's origin, but as a picture
+    /// has it [`Scene::origin`].
+    pub origin: DVec3,
     /// None: a camera of the scene, or one that frames the whole scene.
     pub camera: Option<Camera>,
     /// Name of the scene's camera to use without a `camera`; empty: the first; [`NO_CAMERA`]: none.
@@ -241,6 +244,7 @@ impl Default for Preset {
             playback: ClipPlayback::default(),
             unit: LengthUnit::default(),
             polyline: Arc::default(),
+            origin: DVec3::ZERO,
             camera: None,
             scene_camera: String::new(),
             bookmarks: Vec::new(),
@@ -368,7 +372,7 @@ impl Preset {
             let reach = particle_settings.disc_bounds();
             [reach.min, reach.max]
                 .into_iter()
-                .for_each(|corner| bounds.include(corner));
+                .for_each(|corner| bounds.include(corner + self.origin));
         }
         bounds
     }
@@ -448,15 +452,23 @@ impl Preset {
             }))
         };
         let framing = || {
-            Camera::around(&self.framing_points(scene), FRAMING_DIRECTION, self.frame(aspect))
+            Camera::around(
+                &self.framing_points(scene),
+                FRAMING_DIRECTION,
+                self.frame(aspect),
+            )
         };
-        self.camera.or_else(own).unwrap_or_else(framing)
+        self.camera
+            .unwrap_or_else(|| own().unwrap_or_else(framing).counted_from(self.origin))
     }
 
     /// The camera that comes with `scene` and is used where the preset has none of its own.
     pub fn camera_of<'a>(&self, scene: &'a Scene) -> Option<&'a SceneCamera> {
         let index = scene.camera(&self.scene_camera).unwrap_or(0);
-        scene.cameras.get(index).filter(|_| self.scene_camera != NO_CAMERA)
+        scene
+            .cameras
+            .get(index)
+            .filter(|_| self.scene_camera != NO_CAMERA)
     }
 
     /// What the automatic camera fills of the picture: of a model as much as there is, of a built-in
@@ -482,7 +494,11 @@ impl Preset {
             let clip = clip_from_scene * point.extend(1.0);
             clip.w <= 0.0 || clip.x.abs().max(clip.y.abs()) > BEYOND * clip.w
         };
-        scene.framing_points(self.motion(scene).clip).iter().any(is_outside).then_some(camera)
+        scene
+            .framing_points(self.motion(scene).clip)
+            .iter()
+            .any(is_outside)
+            .then_some(camera)
     }
 
     /// The box of `scene` that a look is fitted to, see [`Scene::subject_bounds`].
@@ -499,13 +515,14 @@ impl Preset {
         if other.is_some() {
             points.extend(scene.framing_points(other).iter());
         }
-        if let Some(particle_settings) = self.in_meters(scene).evaluated_stack().particle_settings()
-        {
+        let preset = self.in_meters(scene);
+        if let Some(particle_settings) = preset.evaluated_stack().particle_settings() {
             // Particles may fly far, but the scene is what is looked at.
             let mut near = Bounds::EMPTY;
             points.iter().for_each(|point| near.include(*point));
             let aside = PARTICLES_ASIDE * near.radius();
             let corners = particle_settings.disc_bounds().corners();
+            let corners = corners.map(|corner| corner + preset.origin);
             points.extend(corners.map(|corner| {
                 if near.is_empty() {
                     corner
@@ -567,6 +584,10 @@ impl Preset {
         } else {
             turned_about(scene.axis(), turns.fract() * std::f64::consts::TAU)
         };
+        let spin = match preset.origin {
+            DVec3::ZERO => spin,
+            origin => DMat4::from_translation(-origin) * spin,
+        };
         let pose = preset.pose(scene);
         let mut bounds = preset.with_particles(
             pose.as_ref()
@@ -604,6 +625,7 @@ impl Preset {
         );
         let scene_state = SceneState {
             world_from_scene: spin,
+            origin: preset.origin,
             pose,
             lights: preset.lights(scene, &spin),
             polyline: preset.polyline.clone(),

@@ -151,6 +151,16 @@ impl Camera {
         }
     }
 
+    /// The same pose, counted from another point of the world.
+    #[must_use]
+    pub fn counted_from(self, origin: DVec3) -> Self {
+        Self {
+            eye: self.eye - origin,
+            target: self.target - origin,
+            ..self
+        }
+    }
+
     /// Unit vector from the eye to the target.
     pub fn forward(&self) -> DVec3 {
         (self.target - self.eye)

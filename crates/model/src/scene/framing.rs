@@ -215,7 +215,11 @@ mod tests {
         [width, height]: [u32; 2],
         frame: fn(f64) -> Frame,
     ) -> [f64; 2] {
-        let camera = Camera::around(points, DIRECTION, frame(f64::from(width) / f64::from(height)));
+        let camera = Camera::around(
+            points,
+            DIRECTION,
+            frame(f64::from(width) / f64::from(height)),
+        );
         let view = View::new(
             &camera,
             width,
@@ -249,7 +253,8 @@ mod tests {
         ] {
             let scene = builtin::build(query).expect("a scene");
             for size in [[320, 240], [240, 320], [1920, 1080]] {
-                let [across, down] = filled(&scene, &scene.framing_points(None), size, Frame::square);
+                let [across, down] =
+                    filled(&scene, &scene.framing_points(None), size, Frame::square);
                 let part = across.max(down) / f64::from(size[0].min(size[1]));
                 assert!(
                     (part / FRAMED - 1.0).abs() < 0.02,
@@ -261,7 +266,11 @@ mod tests {
 
     #[test]
     fn a_framed_model_fills_the_picture_however_flat_or_tall_it_is() {
-        for stretch in [DVec3::ONE, DVec3::new(6.0, 0.5, 6.0), DVec3::new(0.3, 4.0, 0.3)] {
+        for stretch in [
+            DVec3::ONE,
+            DVec3::new(6.0, 0.5, 6.0),
+            DVec3::new(0.3, 4.0, 0.3),
+        ] {
             let mut scene = builtin::build("sphere?triangles=9000").expect("a scene");
             for instance in &mut scene.instances {
                 instance.world_from_object = DMat4::from_scale(stretch);
@@ -271,7 +280,10 @@ mod tests {
                 let [across, down] =
                     filled(&scene, &scene.framing_points(None), size, Frame::whole);
                 let part = (across / f64::from(size[0])).max(down / f64::from(size[1]));
-                assert!((part / FILLED - 1.0).abs() < 0.02, "{stretch} {size:?}: {part}");
+                assert!(
+                    (part / FILLED - 1.0).abs() < 0.02,
+                    "{stretch} {size:?}: {part}"
+                );
             }
         }
     }

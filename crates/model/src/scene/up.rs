@@ -1,6 +1,6 @@
 //! The axis of a file that is up, and the turn that makes it +y, which is up in every scene.
 
-use glam::{DMat4, DVec3, DVec4};
+use glam::{DMat4, DVec4};
 
 use super::{
     bounds::Bounds,
@@ -44,7 +44,11 @@ impl UpAxis {
     /// This axis, or `other` where none is named.
     #[must_use]
     pub const fn or(self, other: Self) -> Self {
-        if matches!(self, Self::Auto) { other } else { self }
+        if matches!(self, Self::Auto) {
+            other
+        } else {
+            self
+        }
     }
 
     /// The turn that makes this axis +y, without rounding.
@@ -96,9 +100,8 @@ impl UpAxis {
             [true, false, true] => return Self::Y,
             _ => {}
         }
-        let stands = |axis: usize| {
-            bounds.min[axis].abs() <= 1e-3 * size && extent[axis] >= RISES * size
-        };
+        let stands =
+            |axis: usize| bounds.min[axis].abs() <= 1e-3 * size && extent[axis] >= RISES * size;
         match (stands(1), stands(2)) {
             (true, false) => Self::Y,
             (false, true) => Self::Z,
@@ -139,7 +142,9 @@ impl Scene {
         }
         let motion = self.rig.motion_bounds;
         self.rig.motion_bounds = Bounds::EMPTY;
-        self.rig.motion_bounds.include_transformed(&turn, &motion, 0.0);
+        self.rig
+            .motion_bounds
+            .include_transformed(&turn, &motion, 0.0);
         self.framing = FramingPoints::default();
         self
     }
@@ -147,12 +152,24 @@ impl Scene {
 
 #[cfg(test)]
 mod tests {
+    use glam::DVec3;
+
     use super::*;
-    use crate::scene::{builtin, pose::{Motion, Pose}};
+    use crate::scene::{
+        builtin,
+        pose::{Motion, Pose},
+    };
 
     #[test]
     fn every_turn_makes_its_axis_up_and_keeps_the_handedness() {
-        let axes = [DVec3::Y, DVec3::Z, DVec3::X, DVec3::NEG_Y, DVec3::NEG_Z, DVec3::NEG_X];
+        let axes = [
+            DVec3::Y,
+            DVec3::Z,
+            DVec3::X,
+            DVec3::NEG_Y,
+            DVec3::NEG_Z,
+            DVec3::NEG_X,
+        ];
         for (up, axis) in UpAxis::ALL.into_iter().zip(axes) {
             assert_eq!(up.turn().transform_vector3(axis), DVec3::Y, "{up:?}");
             assert_eq!(up.turn().determinant(), 1.0, "{up:?}");
@@ -166,17 +183,30 @@ mod tests {
             for up in UpAxis::ALL {
                 let turned = scene.clone().turned_up(up);
                 let places = |scene: &Scene| match Pose::at_rest(scene) {
-                    Some(_) => Pose::at(scene, &Motion { clip: Some(0), time_s: 0.3, ..Motion::default() })
-                        .bounds(scene),
+                    Some(_) => Pose::at(
+                        scene,
+                        &Motion {
+                            clip: Some(0),
+                            time_s: 0.3,
+                            ..Motion::default()
+                        },
+                    )
+                    .bounds(scene),
                     None => scene.bounds(),
                 };
                 let mut expected = Bounds::EMPTY;
                 expected.include_transformed(&up.turn(), &places(&scene), 0.0);
                 let found = places(&turned);
-                let off = (found.min - expected.min).abs().max((found.max - expected.max).abs());
-                assert!(off.max_element() < 1e-6, "{query} {up:?}: {found:?}, not {expected:?}");
+                let off = (found.min - expected.min)
+                    .abs()
+                    .max((found.max - expected.max).abs());
+                assert!(
+                    off.max_element() < 1e-6,
+                    "{query} {up:?}: {found:?}, not {expected:?}"
+                );
                 for (before, after) in scene.lights.iter().zip(&turned.lights) {
-                    let [before, after] = [before, after].map(|light| light.world_from_light.w_axis);
+                    let [before, after] =
+                        [before, after].map(|light| light.world_from_light.w_axis);
                     assert_eq!(up.turn() * before, after, "{query} {up:?}");
                 }
             }
@@ -185,7 +215,10 @@ mod tests {
 
     #[test]
     fn the_axis_of_a_mesh_is_guessed_with_care() {
-        let of = |min: [f64; 3], max: [f64; 3]| Bounds { min: min.into(), max: max.into() };
+        let of = |min: [f64; 3], max: [f64; 3]| Bounds {
+            min: min.into(),
+            max: max.into(),
+        };
         let about = of([-1.0; 3], [1.0; 3]);
         let table = [
             // By its name, whatever else.
@@ -198,19 +231,64 @@ mod tests {
             (about, "", UpAxis::Z, UpAxis::Z),
             (Bounds::EMPTY, "", UpAxis::Z, UpAxis::Z),
             // It stands on a plane through the origin.
-            (of([-1.0, -1.0, 0.0], [1.0, 1.0, 2.0]), "", UpAxis::Y, UpAxis::Z),
-            (of([-1.0, 0.0, -1.0], [1.0, 2.0, 1.0]), "", UpAxis::Z, UpAxis::Y),
+            (
+                of([-1.0, -1.0, 0.0], [1.0, 1.0, 2.0]),
+                "",
+                UpAxis::Y,
+                UpAxis::Z,
+            ),
+            (
+                of([-1.0, 0.0, -1.0], [1.0, 2.0, 1.0]),
+                "",
+                UpAxis::Z,
+                UpAxis::Y,
+            ),
             (of([0.0; 3], [1.0; 3]), "", UpAxis::Y, UpAxis::Y),
             // A sign that hangs on a wall, a plate on the bed of a printer.
-            (of([-1.0, -1.0, 0.0], [1.0, 1.0, 0.1]), "", UpAxis::Y, UpAxis::Y),
-            (of([-1.0, 0.0, -1.0], [1.0, 0.1, 1.0]), "", UpAxis::Z, UpAxis::Z),
+            (
+                of([-1.0, -1.0, 0.0], [1.0, 1.0, 0.1]),
+                "",
+                UpAxis::Y,
+                UpAxis::Y,
+            ),
+            (
+                of([-1.0, 0.0, -1.0], [1.0, 0.1, 1.0]),
+                "",
+                UpAxis::Z,
+                UpAxis::Z,
+            ),
             // East and north of a map, and the same as Y up has it.
-            (of([448_250.0, 5_411_930.0, 90.0], [448_260.0, 5_411_940.0, 99.0]), "", UpAxis::Y, UpAxis::Z),
-            (of([448_250.0, 90.0, -5_411_940.0], [448_260.0, 99.0, -5_411_930.0]), "", UpAxis::Z, UpAxis::Y),
-            (of([10.0, 0.5, 0.0], [11.0, 1.5, 1.0]), "", UpAxis::Y, UpAxis::Z),
+            (
+                of(
+                    [448_250.0, 5_411_930.0, 90.0],
+                    [448_260.0, 5_411_940.0, 99.0],
+                ),
+                "",
+                UpAxis::Y,
+                UpAxis::Z,
+            ),
+            (
+                of(
+                    [448_250.0, 90.0, -5_411_940.0],
+                    [448_260.0, 99.0, -5_411_930.0],
+                ),
+                "",
+                UpAxis::Z,
+                UpAxis::Y,
+            ),
+            (
+                of([10.0, 0.5, 0.0], [11.0, 1.5, 1.0]),
+                "",
+                UpAxis::Y,
+                UpAxis::Z,
+            ),
         ];
         for (bounds, name, usual, up) in table {
-            assert_eq!(UpAxis::guessed(&bounds, [name], usual), up, "{bounds:?} {name:?} {usual:?}");
+            assert_eq!(
+                UpAxis::guessed(&bounds, [name], usual),
+                up,
+                "{bounds:?} {name:?} {usual:?}"
+            );
         }
     }
 }

@@ -134,7 +134,10 @@ fn offers_ui(ui: &mut Ui, state: &State, commands: &Commands) {
         return;
     };
     if let Some(camera) = preset.cropping_camera(scene) {
-        let text = format!("the file's camera {} leaves out some of the model", camera.name);
+        let text = format!(
+            "the file's camera {} leaves out some of the model",
+            camera.name
+        );
         let hint = "Show the whole model instead. The menu of cameras under Scene goes back";
         if offer_ui(ui, &text, "Show all", hint, "Show the whole model") {
             commands.edit(Edit::SceneCamera(NO_CAMERA.into()));

@@ -16,12 +16,7 @@ use super::{
     source::{Bytes, Source},
 };
 use crate::scene::{
-    camera::MIN_NEAR_M,
-    memory::MemoryBudget,
-    model::Scene,
-    pose,
-    punctual::dimmed,
-    rig::Rig,
+    camera::MIN_NEAR_M, memory::MemoryBudget, model::Scene, pose, punctual::dimmed, rig::Rig,
 };
 
 /// Loads a model from memory, within the least memory budget. `read` supplies the files that it
