@@ -328,6 +328,7 @@ pub fn take_bounds(app: &mut App, source: (SceneSource, UpAxis), bounds: Result<
 /// Lets what waits for a scene, or was opened with it, take from it what it leaves open. Returns the
 /// key of the scene from then on.
 fn settle(state: &mut State, key: SceneKey, scene: &Scene) -> SceneKey {
+    state.session.scenes.abandon(&key);
     let is_of = |file: &PresetFile| SceneKey::of(file) == key;
     if let Some(request) = &mut state.files.opening.waiting
         && request.loading.as_ref() == Some(&key)

@@ -584,6 +584,7 @@ fn land_look(look: &PresetFile, own: &PresetFile, scene: &Scene) -> Option<Prese
     // The whole model is shown, so that the picture stays right when the camera moves.
     landed.preset.camera = None;
     landed.map_missing_parts(scene);
+    landed.settle(scene, true);
     Some(landed)
 }
 

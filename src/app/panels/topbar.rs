@@ -243,7 +243,7 @@ fn name_ui(ui: &mut Ui, state: &State, commands: &Commands) {
             .on_hover_text(file);
     });
     if look > 0.0 {
-        plain_ui(ui, open, commands);
+        plain_ui(ui, open, is_modified, commands);
     }
     if is_modified {
         dot(ui, theme::accent());
@@ -254,8 +254,8 @@ fn name_ui(ui: &mut Ui, state: &State, commands: &Commands) {
 }
 
 /// A button of the plain look, which is pressed while that is on. Of another look the name tells.
-fn plain_ui(ui: &mut Ui, open: &PresetFile, commands: &Commands) {
-    let is_on = open.is_plain() || open.look_id() == PLAIN;
+fn plain_ui(ui: &mut Ui, open: &PresetFile, is_modified: bool, commands: &Commands) {
+    let is_on = open.look_id() == PLAIN && !is_modified;
     let hint = match is_on {
         true => "The plain look is on: the scene's own materials under a sun with soft shadows",
         false => "Show this scene in the plain look",

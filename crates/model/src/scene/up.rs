@@ -215,80 +215,35 @@ mod tests {
 
     #[test]
     fn the_axis_of_a_mesh_is_guessed_with_care() {
-        let of = |min: [f64; 3], max: [f64; 3]| Bounds {
-            min: min.into(),
-            max: max.into(),
+        // The box, the usual axis, the right one, and a name.
+        let table = "
+            -1 -1 -1  1 1 1  y z  Part_Z-UP
+            -1 -1 -1  1 1 1  z y  castle yup
+            -1 -1 -1  1 1 1  y y  zup and y-up
+            -1 -1 -1  1 1 1  y y  Syzup
+            -1 -1 -1  1 1 1  z z  nothing tells
+            1 1 1  -1 -1 -1  z z  empty
+            -1 -1 0  1 1 2   y z  stands
+            -1 0 -1  1 2 1   z y  stands
+            0 0 0  1 1 1     y y  stands either way
+            10 0.5 0  11 1.5 1  y z  stands aside
+            -1 -1 0  1 1 0.1 y y  a sign on a wall
+            -1 0 -1  1 0.1 1 z z  a plate on the bed of a printer
+            448250 5411930 90  448260 5411940 99    y z  east and north of a map
+            448250 90 -5411940  448260 99 -5411930  z y  the same as y up has it";
+        let axis = |word: &str| match word {
+            "y" => UpAxis::Y,
+            _ => UpAxis::Z,
         };
-        let about = of([-1.0; 3], [1.0; 3]);
-        let table = [
-            // By its name, whatever else.
-            (about, "Part_ZUP", UpAxis::Y, UpAxis::Z),
-            (about, "castle y-up", UpAxis::Z, UpAxis::Y),
-            (about, "zup and yup", UpAxis::Y, UpAxis::Y),
-            (about, "Syzup", UpAxis::Y, UpAxis::Y),
-            // Nothing tells.
-            (about, "", UpAxis::Y, UpAxis::Y),
-            (about, "", UpAxis::Z, UpAxis::Z),
-            (Bounds::EMPTY, "", UpAxis::Z, UpAxis::Z),
-            // It stands on a plane through the origin.
-            (
-                of([-1.0, -1.0, 0.0], [1.0, 1.0, 2.0]),
-                "",
-                UpAxis::Y,
-                UpAxis::Z,
-            ),
-            (
-                of([-1.0, 0.0, -1.0], [1.0, 2.0, 1.0]),
-                "",
-                UpAxis::Z,
-                UpAxis::Y,
-            ),
-            (of([0.0; 3], [1.0; 3]), "", UpAxis::Y, UpAxis::Y),
-            // A sign that hangs on a wall, a plate on the bed of a printer.
-            (
-                of([-1.0, -1.0, 0.0], [1.0, 1.0, 0.1]),
-                "",
-                UpAxis::Y,
-                UpAxis::Y,
-            ),
-            (
-                of([-1.0, 0.0, -1.0], [1.0, 0.1, 1.0]),
-                "",
-                UpAxis::Z,
-                UpAxis::Z,
-            ),
-            // East and north of a map, and the same as Y up has it.
-            (
-                of(
-                    [448_250.0, 5_411_930.0, 90.0],
-                    [448_260.0, 5_411_940.0, 99.0],
-                ),
-                "",
-                UpAxis::Y,
-                UpAxis::Z,
-            ),
-            (
-                of(
-                    [448_250.0, 90.0, -5_411_940.0],
-                    [448_260.0, 99.0, -5_411_930.0],
-                ),
-                "",
-                UpAxis::Z,
-                UpAxis::Y,
-            ),
-            (
-                of([10.0, 0.5, 0.0], [11.0, 1.5, 1.0]),
-                "",
-                UpAxis::Y,
-                UpAxis::Z,
-            ),
-        ];
-        for (bounds, name, usual, up) in table {
-            assert_eq!(
-                UpAxis::guessed(&bounds, [name], usual),
-                up,
-                "{bounds:?} {name:?} {usual:?}"
-            );
+        for row in table.lines().skip(1) {
+            let words: Vec<&str> = row.split_whitespace().collect();
+            let number = |i: usize| words[i].parse::<f64>().expect("a number");
+            let bounds = Bounds {
+                min: DVec3::new(number(0), number(1), number(2)),
+                max: DVec3::new(number(3), number(4), number(5)),
+            };
+            let guessed = UpAxis::guessed(&bounds, [&*words[8..].join(" ")], axis(words[6]));
+            assert_eq!(guessed, axis(words[7]), "{row}");
         }
     }
 }
