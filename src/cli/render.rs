@@ -7,7 +7,7 @@ use serde_json::json;
 use super::{
     args::{Common, Render},
     arrays,
-    backend::{Backend, scene_of, scene_with_warnings},
+    backend::{Backend, scene_of, scene_with_warnings, tell},
     error::{CliError, Exit},
     files::{self, Names},
     open::{named, open, retake},
@@ -22,7 +22,7 @@ use crate::{
 pub fn run(common: &Common, args: &Render, streams: &mut Streams) -> Result<Exit, CliError> {
     check_names(args, streams)?;
     let to_stdout = args.output == "-";
-    let preset_files = args
+    let mut preset_files = args
         .inputs
         .iter()
         .map(|what| open_with_flags(common, args, what))
@@ -43,10 +43,11 @@ pub fn run(common: &Common, args: &Render, streams: &mut Streams) -> Result<Exit
     }
     let bar = streams.progress(preset_files.len() as u64);
     let mut results = Vec::new();
-    for preset_file in &preset_files {
+    for preset_file in &mut preset_files {
         bar.set_message(preset_file.id.clone());
         let scene = scene_of(common, preset_file, streams)?;
-        scene.notes.iter().for_each(|note| streams.note(note));
+        let preset_file = &*preset_file;
+        tell(&preset_file.preset, &scene, streams);
         let size = preset_file.preset.output.size;
         if preset_file.preset.view(&scene, size).precision.is_relative {
             streams.note("info: the scene lies far from its origin, so positions are taken relative to the eye");
@@ -181,7 +182,7 @@ fn check_arrays(args: &Render) -> Result<(), CliError> {
 fn open_with_flags(common: &Common, args: &Render, what: &str) -> Result<PresetFile, CliError> {
     let mut preset_file = open(common, what)?;
     if let Some(other) = &args.toward {
-        let (scene, _) = scene_with_warnings(common, &preset_file)?;
+        let (scene, _) = scene_with_warnings(common, &mut preset_file)?;
         preset_file = preset_file
             .toward(&open(common, other)?, args.by, &scene)
             .map_err(CliError::usage)?;

@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 
 use super::{
     args::{Common, Sequence},
-    backend::{Backend, scene_of},
+    backend::{Backend, scene_of, tell},
     error::{CliError, Exit},
     files::{self, Names},
     open::{named, open, open_as},
@@ -71,7 +71,7 @@ impl From<FilmError> for CliError {
 }
 
 pub fn run(common: &Common, args: &Sequence, streams: &mut Streams) -> Result<Exit, CliError> {
-    let preset_file = open_with_flags(common, args)?;
+    let mut preset_file = open_with_flags(common, args)?;
     preset_file
         .remarks()
         .iter()
@@ -93,8 +93,8 @@ pub fn run(common: &Common, args: &Sequence, streams: &mut Streams) -> Result<Ex
         .as_deref()
         .map(|path| VideoTarget::new(path, preset_file.preset.output.size))
         .transpose()?;
-    let scene = scene_of(common, &preset_file, streams)?;
-    scene.notes.iter().for_each(|note| streams.note(note));
+    let scene = scene_of(common, &mut preset_file, streams)?;
+    tell(&preset_file.preset, &scene, streams);
     let mut film = Film::new(preset_file, scene, schedule, args.turntable)?;
     if let Some(other) = &args.toward {
         film = film.toward(open(common, other)?)?;

@@ -62,7 +62,7 @@ pub struct Row {
 }
 
 pub fn run(common: &Common, args: &Verify, streams: &mut Streams) -> Result<Exit, CliError> {
-    let preset_files = presets(common, &args.inputs, streams)?;
+    let mut preset_files = presets(common, &args.inputs, streams)?;
     let mut backend = Backend::open(common, streams)?;
     if let Some(folder) = &args.output {
         std::fs::create_dir_all(folder).map_err(|e| {
@@ -77,7 +77,7 @@ pub fn run(common: &Common, args: &Verify, streams: &mut Streams) -> Result<Exit
     };
     let bar = streams.progress(preset_files.len() as u64);
     let mut rows = Vec::new();
-    for preset_file in &preset_files {
+    for preset_file in &mut preset_files {
         bar.set_message(preset_file.id.clone());
         let verified = scene_of(common, preset_file, streams)
             .and_then(|scene| check(common, &options, preset_file, &scene, &mut backend));

@@ -333,7 +333,7 @@ pub async fn export(
     let mut end = None;
     if let Some(look) = &request.from_look_of {
         let [own, look] =
-            [&preset_file.preset, &**look].map(|preset| preset.in_meters(&scene).into_owned());
+            [&preset_file.preset, &**look].map(|preset| preset.metric(&scene).into_owned());
         end = Some(preset_file.clone());
         preset_file.preset = Preset {
             accuracy: own.accuracy,

@@ -21,6 +21,7 @@ use crate::app::{
         theme::{self, ThemeChoice},
     },
 };
+use crate::preset_file::{PLAIN, PresetFile};
 
 /// The bar at the top: menus, the open preset, the adapter, and the cost and error of the picture.
 pub struct TopBar;
@@ -43,7 +44,7 @@ const MENUS: [(&str, &[&[Action]]); 4] = {
         (
             "File",
             &[
-                &[Open, OpenWithScene],
+                &[New, Open, OpenWithScene, Plain],
                 &[Save, SaveAs, Export, Film],
                 &[CopyPreset, PastePreset, CopyLink, ExportAll],
                 &[Quit],
@@ -107,7 +108,7 @@ impl Panel for TopBar {
                 }
                 // What is left belongs to the name, which is cut if it is too long.
                 ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
-                    name_ui(ui, state)
+                    name_ui(ui, state, commands)
                 });
             });
         });
@@ -219,7 +220,7 @@ fn looks_ui(ui: &mut Ui, chosen: ThemeChoice, commands: &Commands) {
 }
 
 /// Name of the preset, and whether it has unsaved changes.
-fn name_ui(ui: &mut Ui, state: &State) {
+fn name_ui(ui: &mut Ui, state: &State, commands: &Commands) {
     ui.spacing_mut().item_spacing.x = 6.0;
     let open = &state.session.preset_file;
     let name = theme::strong(open.title()).strong();
@@ -235,16 +236,34 @@ fn name_ui(ui: &mut Ui, state: &State) {
         true if width > 150.0 => 70.0,
         true => 16.0,
     };
+    let look = if width - rest > 120.0 { 46.0 } else { 0.0 };
     ui.scope(|ui| {
-        ui.set_max_width((width - rest).max(0.0));
+        ui.set_max_width((width - rest - look).max(0.0));
         ui.add(egui::Label::new(name).truncate().sense(Sense::hover()))
             .on_hover_text(file);
     });
+    if look > 0.0 {
+        plain_ui(ui, open, is_modified, commands);
+    }
     if is_modified {
         dot(ui, theme::accent());
         if rest > 16.0 {
             ui.label(theme::weak("unsaved"));
         }
+    }
+}
+
+/// A button of the plain look, which is pressed while that is on. Of another look the name tells.
+fn plain_ui(ui: &mut Ui, open: &PresetFile, is_modified: bool, commands: &Commands) {
+    let is_on = open.look_id() == PLAIN && !is_modified;
+    let hint = match is_on {
+        true => "The plain look is on: the scene's own materials under a sun with soft shadows",
+        false => "Show this scene in the plain look",
+    };
+    let button = egui::Button::new("Plain").small().selected(is_on);
+    let button = ui.add(button).on_hover_text(hint);
+    if button.accessible_name(Action::Plain.label()).clicked() && !is_on {
+        commands.perform(Action::Plain);
     }
 }
 

@@ -12,7 +12,7 @@ use crate::{
     app::{
         App,
         editing::{apply as editing, preset_edit::Edit},
-        files::{apply as files, command::Purpose},
+        files::{apply as files, command::Purpose, open},
         picture::{apply as picture, review::Review},
     },
     scene::camera_moves::{FRONT, SIDE, TOP},
@@ -70,6 +70,8 @@ actions! {
     Undo "Undo" [command(Key::Z)] |app| editing::undo(&mut app.state);
     SaveAs "Save as…" [command_shift(Key::S)] |app| files::ask_path(app, Purpose::SaveAs);
     Save "Save" [command(Key::S)] files::save;
+    New "New" [command(Key::N)] open::begin_new;
+    Plain "Plain look" [] open::show_plain;
     Open "Open…" [command(Key::O)] |app| files::ask_path(app, Purpose::Open);
     Film "Export film…" [command_shift(Key::E)] toggle_film;
     Export "Export PNG…" [plain(Key::F12), command(Key::E)] |app| files::ask_path(app, Purpose::Export);

@@ -239,9 +239,10 @@ impl Compare {
             };
         };
         let own = session.next_preset();
+        let kept = kept.in_meters(&live.scene).into_owned();
         let look = match self.toward > 0.0 {
             true => kept.toward(&own, self.toward, &live.scene),
-            false => kept.in_meters(&live.scene).into_owned(),
+            false => kept,
         };
         let preset = own.with_look_of(look);
         let accuracy = preset.accuracy;
