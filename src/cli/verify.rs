@@ -221,7 +221,7 @@ pub fn check(
             let off = backend.judged(scene, &view, &stack, &nearest)?;
             let off = off.report.max_color_delta;
             if off > 1 {
-                failures.push(format!("{off} of 255 beside the nearest {most} layers"));
+                failures.push(format!("{off} of 255 off {most} nearest layers"));
             }
         }
         failures.extend(budget.count_faults(&capture.frame, capture.layers.as_deref()));

@@ -298,7 +298,7 @@ impl GlassLayers {
         &self.layers[first..self.ends[pixel]]
     }
 
-    /// The nearest `most` of every pixel.
+    /// The nearest `most` per pixel.
     pub fn nearest(&self, most: usize) -> Self {
         let mut near = Self::default();
         for (pixel, behind) in self.behind.iter().enumerate() {
