@@ -280,7 +280,7 @@ impl ErrorReport {
     }
 
     /// What is counted, how much of it `budget` allows, and what a sentence calls it.
-    fn limits(&self, budget: &Budget) -> [(u64, u64, &'static str); 23] {
+    fn limits(&self, budget: &Budget) -> [(u64, u64, &'static str); 22] {
         [
             (
                 self.wrong_triangles,
