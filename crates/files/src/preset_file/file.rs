@@ -20,6 +20,9 @@ use crate::{
     preset::{Preset, SceneSource},
 };
 
+/// The id of a preset that was pasted.
+pub(super) const PASTED: &str = "pasted";
+
 /// The table that holds the texts of effects that a shared preset brings.
 pub(super) const EFFECT_FILES: &str = "effect_files";
 
@@ -85,6 +88,11 @@ impl PresetFile {
             chose_scene: true,
             ..Self::new(id, Preset::studio(id, scene))
         }
+    }
+
+    /// Did it come as a line of text, so that no file has it?
+    pub fn is_pasted(&self) -> bool {
+        self.path.is_none() && self.id == PASTED
     }
 
     /// The name, or the id of a preset without a name.
