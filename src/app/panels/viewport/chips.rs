@@ -134,12 +134,12 @@ fn offers_ui(ui: &mut Ui, state: &State, commands: &Commands) {
         return;
     };
     if let Some(camera) = preset.cropping_camera(scene) {
-        let text = format!(
-            "the file's camera {} leaves out some of the model",
+        let text = "the file's camera crops the model";
+        let hint = format!(
+            "Show the whole model instead of the view of camera {}. The menu of cameras under Scene goes back",
             camera.name
         );
-        let hint = "Show the whole model instead. The menu of cameras under Scene goes back";
-        if offer_ui(ui, &text, "Show all", hint, "Show the whole model") {
+        if offer_ui(ui, text, "Show all", &hint, "Show the whole model") {
             commands.edit(Edit::SceneCamera(NO_CAMERA.into()));
         }
     }
@@ -147,7 +147,7 @@ fn offers_ui(ui: &mut Ui, state: &State, commands: &Commands) {
         && let Some(studio) = preset.stack.get("studio")
         && let Some(lights) = studio.effect.field("lights")
     {
-        let text = "the lights of the file are too strong for a picture";
+        let text = "the file's lights are too strong";
         let hint = format!("Set studio.lights to {dimmed}, as the plain look does");
         if offer_ui(ui, text, "Dim", &hint, "Dim the lights") {
             let lights = (studio.effect.clone(), lights.clone());
