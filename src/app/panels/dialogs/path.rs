@@ -280,10 +280,10 @@ pub fn path_ui(
     ui.add_space(theme::HALF);
     let rows = dialog.rows(recents);
     let mut is_accepted = field_ui(ui, dialog, &rows);
-    if cfg!(not(target_arch = "wasm32")) {
-        if let Some(folder) = places_ui(ui, recents) {
-            dialog.go_to(&folder);
-        }
+    if cfg!(not(target_arch = "wasm32"))
+        && let Some(folder) = places_ui(ui, recents)
+    {
+        dialog.go_to(&folder);
     }
     is_accepted |= list_ui(ui, dialog, &rows, missing);
     if dialog.purpose == Purpose::SaveAs {
