@@ -12,7 +12,7 @@ use rasterlab::{
     },
     preset_file::{self, PresetFile},
     scene::{
-        Ground, GroundShape,
+        Ground, GroundShape, UpAxis,
         camera::{Camera, MIN_NEAR_M, Projection},
         parts::{Scope, ShownParts},
     },
@@ -204,6 +204,7 @@ pub fn any_preset(rng: &mut Rng) -> Preset {
             .collect(),
         scene: scenes[index(rng, 3)].clone(),
         parts: ShownParts {
+            up: UpAxis::ALL[index(rng, 7)],
             only: scope(2),
             hidden: scope(1),
             variant: ["", "night and day"][index(rng, 2)].into(),
@@ -217,6 +218,7 @@ pub fn any_preset(rng: &mut Rng) -> Preset {
             .collect(),
         unit: [LengthUnit::Meter, LengthUnit::Scene][index(rng, 2)],
         bookmarks: bookmarks.collect(),
+        origin: Preset::default().origin,
         camera,
         scene_camera: ["", "from above"][index(rng, 2)].into(),
         clock: Clock {
