@@ -204,20 +204,25 @@ impl Backend {
         }
     }
 
-    /// The picture with everything that a judge needs.
-    pub fn capture(&mut self, preset: &Preset, scene: &Arc<Scene>) -> Result<Capture, CliError> {
+    /// The picture with all that a judge needs; `again`: after itself, if no effect remembers any.
+    pub fn capture(
+        &mut self,
+        preset: &Preset,
+        scene: &Arc<Scene>,
+        again: bool,
+    ) -> Result<Capture, CliError> {
         let factor = preset.accuracy.scale().factor();
-        let moments = self.moments(preset, scene, factor)?;
+        let mut moments = self.moments(preset, scene, factor)?;
+        if again && preset.stack.earlier_frames().is_none() {
+            moments.extend_from_within(..);
+        }
         match self {
             Self::Oracle => {
                 let ((view, stack), before) = moments
                     .split_last()
                     .expect("a preset has at least one frame");
-                let before = if before.is_empty() {
-                    None
-                } else {
-                    Some(oracle::render_sequence(scene, before)?)
-                };
+                let drawn = || oracle::render_sequence(scene, before);
+                let before = (!before.is_empty()).then(drawn).transpose()?;
                 let earlier = before.as_ref().map(Frame::earlier);
                 let (frame, geometry) = oracle::render_with_geometry(scene, view, stack, earlier)?;
                 Ok(Capture {

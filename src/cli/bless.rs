@@ -36,7 +36,7 @@ pub fn run(common: &Common, args: &Bless, streams: &mut Streams) -> Result<Exit,
     for (mut preset_file, writes) in preset_files {
         bar.set_message(preset_file.id.clone());
         let scene = scene_of(common, &mut preset_file, streams)?;
-        let golden = golden::draw(&preset_file, &*scene).map_err(CliError::usage)?;
+        let golden = golden::draw(&preset_file, &scene).map_err(CliError::usage)?;
         let snapshots = args
             .snapshots
             .clone()

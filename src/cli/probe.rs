@@ -68,7 +68,7 @@ pub fn run(common: &Common, args: &Probe, streams: &mut Streams) -> Result<Exit,
     let scene = scene_of(common, &mut preset_file, streams)?;
     let mut backend = Backend::open(common, streams)?;
     let preset = &preset_file.preset;
-    let capture = backend.capture(preset, &scene)?;
+    let capture = backend.capture(preset, &scene, false)?;
     let planned = match &backend {
         Backend::Gpu(renderer, _) => renderer.plan().map(|plan| plan.key.options),
         Backend::Oracle => None,
@@ -217,7 +217,7 @@ fn options(
             bar.set_message(format!("{}={word}", axis.name));
             let mut pinned = preset.clone();
             pinned.accuracy.pins.set(axis, Some(index));
-            let at_sample = backend.capture(&pinned, scene).map(|capture| {
+            let at_sample = backend.capture(&pinned, scene, false).map(|capture| {
                 let first = drawn_pixels(pixel, capture.geometry.scale)[0];
                 let at = self::index(&capture, first);
                 let frame = &capture.frame;

@@ -1,5 +1,7 @@
 //! `render`: one picture of each preset, and arrays of its triangle ids and depths.
 
+use std::path::PathBuf;
+
 use serde_json::json;
 
 use super::{
@@ -11,25 +13,15 @@ use super::{
     open::{named, open, retake},
     streams::Streams,
 };
-use crate::preset_file::{self, PresetFile};
+use crate::{
+    frame::Frame,
+    preset_file::{self, PresetFile},
+    scene::Scene,
+};
 
 pub fn run(common: &Common, args: &Render, streams: &mut Streams) -> Result<Exit, CliError> {
+    check_names(args, streams)?;
     let to_stdout = args.output == "-";
-    files::check_picture_name(&args.output)?;
-    if to_stdout && (streams.json || args.inputs.len() > 1) {
-        return Err(CliError::usage(
-            "-o - writes one PNG to stdout; leave out --json and name one preset",
-        ));
-    }
-    if args.inputs.len() > 1
-        && !(files::has_preset(&args.output)? || files::has_number(&args.output)?)
-    {
-        return Err(CliError::usage(format!(
-            "{}: put {{preset}} or {{n}} into the name, since there are several presets",
-            args.output
-        )));
-    }
-    check_arrays(args)?;
     let mut preset_files = args
         .inputs
         .iter()
@@ -73,42 +65,23 @@ pub fn run(common: &Common, args: &Render, streams: &mut Streams) -> Result<Exit
             preset_file::png_with_preset(&frame, &saved, &backend.provenance())?
         };
         bar.inc(1);
-        let mut written = Vec::new();
-        if !to_stdout {
-            written.push((
-                "file",
-                files::create(&args.output, &names, common.force, &png)?,
-            ));
-        }
-        if let Some(template) = &args.triangle_ids {
-            written.push((
-                "triangle_ids",
-                files::create(
-                    template,
-                    &names,
-                    common.force,
-                    &arrays::triangle_ids(&frame),
-                )?,
-            ));
-        }
-        if let Some(template) = &args.depths {
-            let view = preset_file
-                .preset
-                .view(&scene, preset_file.preset.output.size);
-            written.push((
-                "depths",
-                files::create(
-                    template,
-                    &names,
-                    common.force,
-                    &arrays::depths(&frame, &view),
-                )?,
-            ));
-        }
         if to_stdout {
+            write_arrays(common, args, preset_file, &scene, &frame, &names)?;
             streams.bytes(&png)?;
             continue;
         }
+        let mut written = vec![(
+            "file",
+            files::create(&args.output, &names, common.force, &png)?,
+        )];
+        written.extend(write_arrays(
+            common,
+            args,
+            preset_file,
+            &scene,
+            &frame,
+            &names,
+        )?);
         let mut result = json!({ "size": [frame.width, frame.height], "covered": frame.covered(), "counters": frame.counters });
         for (what, path) in &written {
             result[what] = path.to_string_lossy().into();
@@ -123,6 +96,54 @@ pub fn run(common: &Common, args: &Render, streams: &mut Streams) -> Result<Exit
         streams.object("render", backend.json(), results)?;
     }
     Ok(Exit::Done)
+}
+
+/// Errors: a name that is no picture's, or that several presets would share.
+fn check_names(args: &Render, streams: &Streams) -> Result<(), CliError> {
+    let to_stdout = args.output == "-";
+    files::check_picture_name(&args.output)?;
+    if to_stdout && (streams.json || args.inputs.len() > 1) {
+        return Err(CliError::usage(
+            "-o - writes one PNG to stdout; leave out --json and name one preset",
+        ));
+    }
+    if args.inputs.len() > 1
+        && !(files::has_preset(&args.output)? || files::has_number(&args.output)?)
+    {
+        return Err(CliError::usage(format!(
+            "{}: put {{preset}} or {{n}} into the name, since there are several presets",
+            args.output
+        )));
+    }
+    check_arrays(args)
+}
+
+/// The arrays beside the picture, each with its key in `--json` and its path.
+fn write_arrays(
+    common: &Common,
+    args: &Render,
+    preset_file: &PresetFile,
+    scene: &Scene,
+    frame: &Frame,
+    names: &Names,
+) -> Result<Vec<(&'static str, PathBuf)>, CliError> {
+    let mut written = Vec::new();
+    if let Some(template) = &args.triangle_ids {
+        written.push((
+            "triangle_ids",
+            files::create(template, names, common.force, &arrays::triangle_ids(frame))?,
+        ));
+    }
+    if let Some(template) = &args.depths {
+        let view = preset_file
+            .preset
+            .view(scene, preset_file.preset.output.size);
+        written.push((
+            "depths",
+            files::create(template, names, common.force, &arrays::depths(frame, &view))?,
+        ));
+    }
+    Ok(written)
 }
 
 /// Refuses names of arrays that cannot hold one array for each preset.

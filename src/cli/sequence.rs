@@ -17,8 +17,8 @@ use super::{
 };
 use crate::{
     film::{
-        Film, FilmError, FrameJob, Observer, Outputs, Painter, Production, Schedule, Times,
-        VideoTarget,
+        Container, Film, FilmError, FrameJob, Observer, Outputs, Painter, Production, Schedule,
+        Times, VideoTarget,
     },
     frame::Frame,
     preset::Preset,
@@ -76,10 +76,14 @@ pub fn run(common: &Common, args: &Sequence, streams: &mut Streams) -> Result<Ex
         .remarks()
         .iter()
         .for_each(|remark| streams.note(remark));
+    let container = args.video.as_deref().and_then(Container::of);
+    if let Some(note) = container.and_then(|container| container.fps_note(args.fps)) {
+        streams.note(&note);
+    }
     let times = Times {
         from_s: args.from,
         to_s: args.to,
-        fps: args.fps,
+        fps: container.map_or(args.fps, |container| container.fps(args.fps)),
         frames: args.frames.unwrap_or_default(),
     };
     let schedule = Schedule::new(&times, &preset_file.preset.clock, "--")?;

@@ -7,7 +7,6 @@ use serde_json::json;
 use super::{
     args::{Common, Sweep},
     backend::{Backend, scene_of},
-    contact_sheet::{ContactSheet, Picture, size_of},
     error::{CliError, Exit},
     files,
     open::open_as,
@@ -15,6 +14,7 @@ use super::{
     streams::Streams,
 };
 use crate::{
+    contact_sheet::{ContactSheet, Picture, size_of},
     preset::{Preset, SceneSource},
     preset_file::{
         self, PresetFile,

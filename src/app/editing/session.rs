@@ -187,8 +187,12 @@ impl Session {
     }
 
     /// True if the preset differs from its file in more than the camera, which is moved only to
-    /// look. A preset without a file does not until it is edited.
+    /// look. A preset without a file does not until it is edited, unless it was pasted: then no file
+    /// has it.
     pub fn is_modified(&self) -> bool {
+        if self.preset_file.is_pasted() {
+            return true;
+        }
         let open = &self.preset_file.preset;
         let Some(as_opened) = self.files.get(&FileId::of(&self.preset_file)) else {
             return true;

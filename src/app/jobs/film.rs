@@ -140,7 +140,10 @@ impl Request {
         let times = Times {
             from_s: Some(self.range_s[0]),
             to_s: Some(self.range_s[1]),
-            fps: self.fps,
+            fps: match self.format {
+                Format::Video(container) => container.fps(self.fps),
+                _ => self.fps,
+            },
             frames: [None; 2],
         };
         Schedule::new(&times, clock, "")

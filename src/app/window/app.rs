@@ -594,6 +594,7 @@ impl eframe::App for App {
         self.panel_ui(ui, |panels| &mut panels.randomize);
         self.panel_ui(ui, |panels| &mut panels.sweep);
         self.panel_ui(ui, |panels| &mut panels.film);
+        self.panel_ui(ui, |panels| &mut panels.help);
         self.request_thumbnail(&ctx);
         self.request_precision(&ctx, is_held || self.panels.film.is_exporting());
         let compare = &self.panels.viewport.compare;

@@ -22,6 +22,9 @@ use crate::{
     scene::{Scene, UpAxis},
 };
 
+/// The id of a preset that was pasted.
+pub(super) const PASTED: &str = "pasted";
+
 /// The table that holds the texts of effects that a shared preset brings.
 pub(super) const EFFECT_FILES: &str = "effect_files";
 
@@ -122,6 +125,11 @@ impl PresetFile {
         if may_dim && self.is_plain() {
             self.preset.dim_lights(scene);
         }
+    }
+
+    /// Did it come as a line of text, so that no file has it?
+    pub fn is_pasted(&self) -> bool {
+        self.path.is_none() && self.id == PASTED
     }
 
     /// The name, or the id of a preset without a name.

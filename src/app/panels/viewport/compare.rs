@@ -135,14 +135,22 @@ impl Compare {
     /// What A shows, as `A` is labeled.
     pub fn name(&self) -> String {
         let name: &str = match &self.kept {
-            None => return "reference".into(),
+            None => return "this preset, most exact".into(),
             Some(kept) if kept.name.is_empty() => "kept preset",
-            Some(kept) => &kept.name,
+            Some(kept) => &format!("{}, as kept", kept.name),
         };
         match self.toward > 0.0 {
             true => format!("{name}, {:.0} % toward B", 100.0 * self.toward),
             false => name.into(),
         }
+    }
+
+    /// What B shows, as `B` is labeled.
+    pub fn name_b(state: &State) -> String {
+        format!(
+            "this preset, {}",
+            state.session.preset().accuracy.tier.name()
+        )
     }
 
     /// True while a report on A is still to come.
