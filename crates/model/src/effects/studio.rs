@@ -7,7 +7,7 @@
 //! stays white. The fractions of light that this takes are rational functions fitted to the integral
 //! over all directions, within 0.013 of it.
 
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 
 use super::{
     BuiltIn, Effect, Surface, SurfaceEffect,
@@ -50,7 +50,6 @@ words! {
 pub static EFFECT: BuiltIn = BuiltIn::new(|| {
     Effect::declared::<Studio>().on_surface::<Studio>()
     .in_light::<Studio>()
-    .in_surroundings()
     .into()
 });
 
@@ -80,7 +79,7 @@ impl Studio {
         let turn = turned(p.turn_deg.into());
         let sky = Seen::of(Environment::of(p.environment), picture);
         let diffuse = sky.irradiance(turned_by(s.normal, turn));
-        let reflected = sky.radiance(turned_by(spread, turn), reflector.alpha, DVec2::ZERO);
+        let reflected = sky.radiance(turned_by(spread, turn), reflector.alpha);
         let from_sky = (reflector.diffuse * (1.0 - seen.all) + seen.repeated) * diffuse
             + seen.once * reflected;
 
@@ -250,6 +249,8 @@ fn fifth(x: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use std::f64::consts::TAU;
+
+    use glam::DVec2;
 
     use super::{super::hooks::environment::Surroundings, *};
 

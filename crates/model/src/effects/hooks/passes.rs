@@ -6,10 +6,7 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3, DVec4};
 
 use super::Picture;
-use crate::{
-    effects::Words,
-    scene::{panorama::Panorama, view::View},
-};
+use crate::scene::{panorama::Panorama, view::View};
 
 /// Depth of a pixel that shows nothing, meters.
 pub const EMPTY_DEPTH_M: f64 = 1e9;
@@ -325,12 +322,6 @@ impl PassHook {
     pub fn kept(&self) -> Option<(&ImagePass, EarlierFrames)> {
         self.passes.iter().find_map(|pass| Some((pass, pass.kept?)))
     }
-}
-
-/// The f64 side of an effect of image passes.
-pub trait PassEffect: Words {
-    /// What the pass of this index writes: linear RGBA.
-    fn pass(index: usize, at: &ImageAt, params: &Self) -> DVec4;
 }
 
 #[cfg(test)]
