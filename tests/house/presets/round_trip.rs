@@ -12,7 +12,7 @@ use rasterlab::{
     },
     preset_file::{self, PresetFile},
     scene::{
-        Ground, GroundShape, UpAxis,
+        Ground, GroundShape,
         camera::{Camera, MIN_NEAR_M, Projection},
         parts::{Scope, ShownParts},
         up::UpAxis,
@@ -205,7 +205,6 @@ pub fn any_preset(rng: &mut Rng) -> Preset {
             .collect(),
         scene: scenes[index(rng, 3)].clone(),
         parts: ShownParts {
-            up: UpAxis::ALL[index(rng, 7)],
             only: scope(2),
             hidden: scope(1),
             up: UpAxis::ALL[index(rng, UpAxis::ALL.len())],
@@ -221,7 +220,6 @@ pub fn any_preset(rng: &mut Rng) -> Preset {
         origin: Preset::default().origin,
         unit: [LengthUnit::Meter, LengthUnit::Scene][index(rng, 2)],
         bookmarks: bookmarks.collect(),
-        origin: Preset::default().origin,
         camera,
         scene_camera: ["", "from above"][index(rng, 2)].into(),
         clock: Clock {
