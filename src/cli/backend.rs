@@ -15,7 +15,8 @@ use crate::{
     },
     measure::{ErrorReport, Verdict},
     oracle,
-    preset::{Preset, Visibility},
+    params::legible_line,
+    preset::{NO_CAMERA, Preset, Visibility},
     preset_file::{self, PresetError, PresetFile, Provenance},
     scene::{Scene, draw::DrawError, view::View},
 };
@@ -272,10 +273,11 @@ pub fn adapter_json(summary: &AdapterSummary, caps: &Caps) -> Value {
     })
 }
 
-/// The scene of a preset. Warns of scopes that match no part of it.
+/// The scene of a preset, which then has what it [takes from it](PresetFile::settle). Warns of scopes
+/// that match no part of it.
 pub fn scene_of(
     common: &Common,
-    preset_file: &PresetFile,
+    preset_file: &mut PresetFile,
     streams: &Streams,
 ) -> Result<Arc<Scene>, CliError> {
     let (scene, warnings) = loading::watched(streams, || scene_with_warnings(common, preset_file))?;
@@ -285,10 +287,21 @@ pub fn scene_of(
     Ok(scene)
 }
 
-/// The scene of a preset, with warnings about scopes that match no part of it.
+/// Tells what a person should know of the scene of a picture.
+pub fn tell(preset: &Preset, scene: &Scene, streams: &Streams) {
+    scene.notes.iter().for_each(|note| streams.note(note));
+    if let Some(camera) = preset.cropping_camera(scene) {
+        let name = legible_line(&camera.name);
+        streams.note(&format!(
+            "info: the file's camera {name} leaves out some of the model; --set 'scene.camera={NO_CAMERA}' shows all of it"
+        ));
+    }
+}
+
+/// [`scene_of`], with the warnings.
 pub fn scene_with_warnings(
     common: &Common,
-    preset_file: &PresetFile,
+    preset_file: &mut PresetFile,
 ) -> Result<(Arc<Scene>, Vec<String>), CliError> {
     let scene = preset_file::load_scene(&preset_file.preset, preset_file.path.as_deref())
         .map_err(|e| CliError::from(e).during(format!("preset {}", preset_file.id)))?;
@@ -296,6 +309,11 @@ pub fn scene_with_warnings(
         return Err(CliError::usage(format!("{}: {fault}", scene.name))
             .during(format!("preset {}", preset_file.id)));
     }
+    let is_lit = common
+        .set
+        .iter()
+        .any(|set| set.trim_start().starts_with("studio.lights"));
+    preset_file.settle(&scene, !is_lit);
     let file = preset_file.path.as_ref().map_or_else(
         || format!("{}.toml", preset_file.id),
         |path| path.display().to_string(),

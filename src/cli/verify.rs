@@ -62,7 +62,7 @@ pub struct Row {
 }
 
 pub fn run(common: &Common, args: &Verify, streams: &mut Streams) -> Result<Exit, CliError> {
-    let preset_files = presets(common, &args.inputs, streams)?;
+    let mut preset_files = presets(common, &args.inputs, streams)?;
     let mut backend = Backend::open(common, streams)?;
     if let Some(folder) = &args.output {
         std::fs::create_dir_all(folder).map_err(|e| {
@@ -77,7 +77,7 @@ pub fn run(common: &Common, args: &Verify, streams: &mut Streams) -> Result<Exit
     };
     let bar = streams.progress(preset_files.len() as u64);
     let mut rows = Vec::new();
-    for preset_file in &preset_files {
+    for preset_file in &mut preset_files {
         bar.set_message(preset_file.id.clone());
         let verified = scene_of(common, preset_file, streams)
             .and_then(|scene| check(common, &options, preset_file, &scene, &mut backend));
@@ -105,7 +105,15 @@ pub fn run(common: &Common, args: &Verify, streams: &mut Streams) -> Result<Exit
     } else {
         streams.text(&text(&rows, backend.class()))?;
     }
-    for preset_file in &preset_files {
+    tell_notes(&preset_files, &rows, streams);
+    Ok(Exit::failed_if(
+        rows.iter().any(|row| !row.failures.is_empty()),
+    ))
+}
+
+/// Says of each row what its figures do not.
+fn tell_notes(preset_files: &[PresetFile], rows: &[Row], streams: &mut Streams) {
+    for preset_file in preset_files {
         let names = judged_by_own_text(&preset_file.preset).join(", ");
         if !names.is_empty() {
             streams.note(&format!(
@@ -158,9 +166,6 @@ pub fn run(common: &Common, args: &Verify, streams: &mut Streams) -> Result<Exit
             streams.note(&format!("{} with {}: {failure}", row.preset, row.option))
         })
     });
-    Ok(Exit::failed_if(
-        rows.iter().any(|row| !row.failures.is_empty()),
-    ))
 }
 
 /// The effects of a preset that have no independent twin: the oracle evaluates their own text in
