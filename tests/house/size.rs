@@ -12,7 +12,7 @@ const RUST: &[(&str, u64)] = &[
     // The first look at a model: the axis that is up and what its scene tells (4). The plain look itself
     // is a preset, which crates/model lost (4).
     // Rates of films as fractions, those of GIFs, and pasted presets (2).
-    // The reach that a vertex effect states (0.5), paid by crates/model.
+    // The reach that a vertex effect states (1), paid by crates/model.
     ("crates/files", 379_000),
     ("crates/gpu", 421_500),
     ("crates/kernels", 238_500),
@@ -21,8 +21,8 @@ const RUST: &[(&str, u64)] = &[
     // bring 31 KB: places in f64 far from the origin (7), names of other encodings and options of maps
     // (7), textures of transmission and morphed colors (10), all else (7). Paid by 131 KB of tests.
     // The first look at a model (15): the axis that is up (9), frames that fill the picture, cameras that
-    // crop, lights that are too strong, and the point from which patterns count. Ten more effects have
-    // no Rust any more (-27).
+    // crop, lights that are too strong, and the point from which patterns count. Ten more effects have no
+    // Rust any more (-27).
     ("crates/model", 1_466_500),
     ("crates/one_thread", 4_100),
     // Pixels, vertices and samples of a row handed on together (6).
