@@ -53,12 +53,12 @@ impl PassEffect for Ambient {
 }
 
 impl Ambient {
-    /// How much is hidden from a pixel, in red, and its depth, in alpha.
+    /// How much is hidden from a pixel, in red, and its reversed depth, in alpha.
     fn find(&self, at: &ImageAt) -> DVec4 {
         let (triangle_id, key, _) = at.input.picture.at(at.x, at.y);
         let here_m = at.depth_m(at.x, at.y);
         if triangle_id.is_none() {
-            return DVec4::new(0.0, 0.0, 0.0, here_m);
+            return DVec4::ZERO;
         }
         let depth = f64::from(f32::from_bits(key));
         // On a plane, depths change evenly across the picture.
@@ -74,23 +74,24 @@ impl Ambient {
             let step = away * turned(360.0 * turns) + DVec2::splat(0.5 + at.step_offset);
             let step = [step.x, step.y].map(|by| by.floor() as i64);
             let plane = depth + slope[0] * step[0] as f64 + slope[1] * step[1] as f64;
-            let seen_m = at.depth_m(at.x + step[0], at.y + step[1]);
+            let (_, key, _) = at.input.picture.at(at.x + step[0], at.y + step[1]);
+            let seen = f64::from(f32::from_bits(key));
             // How far what is seen there stands out from the plane of this pixel.
-            let height = (at.input.lens.meters(plane) - seen_m) / radius_m;
+            let height = at.meters_apart(seen, plane - seen) / radius_m;
             hidden += (4.0 * height - 0.1).clamp(0.0, 1.0) * (2.0 - height).clamp(0.0, 1.0);
         }
-        DVec4::new(hidden / f64::from(TAPS), 0.0, 0.0, here_m)
+        DVec4::new(hidden / f64::from(TAPS), 0.0, 0.0, depth)
     }
 
     /// Mean along a direction of pixels at about the same depth.
     fn mean(&self, at: &ImageAt, along: [i64; 2]) -> DVec4 {
         let here = at.last(at.x, at.y);
-        let radius_m = self.radius_m(at, here.w);
+        let radius_m = self.radius_m(at, at.input.lens.meters(here.w));
         let (mut sum, mut weights) = (0.0, 0.0);
         let reach = i64::from(self.soft_px);
         for i in -reach..=reach {
             let there = at.last(at.x + i * along[0], at.y + i * along[1]);
-            let apart = (there.w - here.w) / radius_m;
+            let apart = at.meters_apart(here.w, there.w - here.w) / radius_m;
             let weight = 1.0 / (1.0 + 16.0 * apart * apart);
             sum += weight * there.x;
             weights += weight;

@@ -117,6 +117,10 @@ impl Host for PassHost<'_> {
             }
             14 => at.kept(pixel()[0], pixel()[1]),
             15 => at.kept_at(place()),
+            16 => {
+                result[0] = Word::from_f64(at.meters_apart(place().x, place().y));
+                return;
+            }
             _ => {
                 return PictureHost(at.input.picture, &[]).external(index, lane, arguments, result);
             }

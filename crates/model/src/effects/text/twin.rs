@@ -29,7 +29,7 @@ use crate::{
 const MAX_STEPS: u64 = 100_000_000;
 /// Functions of the library that read more than their arguments: of `lib/image`,
 /// `lib/image_pass`, `lib/image_direction` and `lib/image_kept`, then of `lib/image_file`.
-pub const EXTERNALS: [&str; 18] = [
+pub const EXTERNALS: [&str; 19] = [
     "image_has",
     "image_at",
     "image_background",
@@ -46,11 +46,12 @@ pub const EXTERNALS: [&str; 18] = [
     "image_direction",
     "image_kept",
     "image_kept_at",
+    "image_meters_apart",
     "image_file_size",
     "image_file_texel",
 ];
 /// Index of the first function of `lib/image_file`.
-const IMAGE_FILES: usize = 16;
+const IMAGE_FILES: usize = 17;
 /// How much the inputs of a color may be off on the f32 side, relative to the largest component of
 /// each.
 const INPUT_ERROR: f64 = 1.0 / (1 << 17) as f64;
