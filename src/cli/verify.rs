@@ -15,6 +15,7 @@ use super::{
 };
 use crate::{
     accuracy::{Skinning, Transparency},
+    effect_files::{self, Crossing, Unsound},
     frame::Frame,
     gpu::Capture,
     measure::{
@@ -56,6 +57,8 @@ pub struct Row {
     pub failures: Vec<String>,
     /// What the preset allows to err without saying by how much: pinned options and the tier.
     pub without_budget: Vec<String>,
+    /// What each effect makes that is no color, and where, one sentence each.
+    unsound: Vec<String>,
     /// Volume with linear skinning, as a fraction of that with dual quaternions; none without
     /// skins.
     volume: Option<f64>,
@@ -121,6 +124,12 @@ fn tell_notes(preset_files: &[PresetFile], rows: &[Row], streams: &mut Streams) 
                 preset_file.id
             ));
         }
+    }
+    for (row, unsound) in rows
+        .iter()
+        .flat_map(|row| row.unsound.iter().map(move |u| (row, u)))
+    {
+        streams.note(&format!("{} with {}: {unsound}", row.preset, row.option));
     }
     rows.iter().filter(|row| row.accuracy.race_pixels > 0).for_each(|row| {
         streams.note(&format!(
@@ -211,7 +220,11 @@ pub fn check(
         });
         let name = option.map_or("exact", Visibility::name);
         let capture = backend.capture(&pinned, scene, false)?;
-        let verdict = backend.judged(scene, &view, &stack, &capture)?;
+        let (verdict, crossings) = effect_files::crossings(&stack, |stack| {
+            backend.judged(scene, &view, stack, &capture)
+        })
+        .map_err(CliError::usage)?;
+        let verdict = verdict?;
         let pixels_over_tolerance = budget.pixels_over_tolerance(&verdict, &capture.frame);
         let mut failures = budget.faults(
             &verdict.report,
@@ -270,6 +283,7 @@ pub fn check(
                 .as_ref()
                 .map(|look| [look.id.clone(), preset_file.scene_name()]),
             judged_by_own_text: judged_by_own_text(&preset),
+            unsound: unsound(&crossings),
             option: name,
             accuracy: verdict.report,
             pixels_over_tolerance,
@@ -424,4 +438,24 @@ fn json_row(row: &Row, backend: &Backend) -> Value {
     }
     object["rms_color_delta"] = number(row.accuracy.rms_color_delta);
     object
+}
+
+/// A sentence for each effect that makes what is not finite.
+fn unsound(crossings: &[Crossing]) -> Vec<String> {
+    let is_not_finite = |crossing: &&Crossing| crossing.made != Unsound::Negative;
+    let mut of_effects: Vec<(&Crossing, u64)> = Vec::new();
+    for crossing in crossings.iter().filter(is_not_finite) {
+        let known = of_effects
+            .iter_mut()
+            .find(|(first, _)| first.effect == crossing.effect);
+        match known {
+            Some((_, count)) => *count += 1,
+            None => of_effects.push((crossing, 1)),
+        }
+    }
+    let sentence = |(first, count): (&Crossing, u64)| {
+        let ([x, y], effect, made) = (first.pixel, &first.effect.name, first.made.word());
+        format!("{effect} makes {made} at {count} pixels, the first at {x}, {y}")
+    };
+    of_effects.into_iter().map(sentence).collect()
 }

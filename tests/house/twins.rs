@@ -148,6 +148,7 @@ fn sample_functions_agree() {
                 size: [1 + whole(&mut rng, 200), 1 + whole(&mut rng, 200)],
                 center: vector(&mut rng, -3.0, 3.0),
                 center_error_m: 0.0,
+                center_screen_error: 0.0,
                 center_screen: vector(&mut rng, 0.0, 1.0).truncate(),
             };
             let [given, expected] = both.map(|hook| match hook.has_setup {

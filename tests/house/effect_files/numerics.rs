@@ -140,3 +140,25 @@ fn a_crossing_names_the_effect_the_kind_and_the_parameter() {
             .is_empty()
     );
 }
+
+#[test]
+fn a_pass_that_writes_what_is_not_finite_is_named_with_its_pixel() {
+    let text = "struct Probed { @range(0, 4, 1) a: f32, @range(0, 4, 1) b: f32 }
+fn probed(at: ImageAt, p: Probed) -> vec4f {
+    let bad = at.x == 20 && at.y == 9;
+    return vec4f(select(-1.0, 1.0 / (p.a - 2.0), bad), 0.0, 0.0, 1.0);
+}";
+    let effect = read("probed.wgsl", "probed", text).unwrap_or_else(|error| panic!("{error}"));
+    let (scene, view, stack) = drawn(&effect, [2.0, 2.0]);
+    let (frame, found) =
+        crossings(&stack, |stack| oracle::render(&scene, &view, stack)).expect("it is evaluated");
+    frame.expect("a picture");
+    let [crossing] = &found[..] else {
+        panic!("{} pixels", found.len())
+    };
+    let parameter = crossing.parameter.as_ref().map(|field| field.name.as_str());
+    assert_eq!(
+        (crossing.pixel, crossing.made, parameter),
+        ([20, 9], Unsound::Infinite, Some("a"))
+    );
+}

@@ -1,5 +1,5 @@
 //! Soundness probes: effects that do what another effect does, and record on the way where its
-//! result stops being a color.
+//! result stops being a color, or what a pass writes stops being finite.
 
 use std::sync::{
     Arc, Mutex, Weak,
@@ -15,7 +15,10 @@ use super::{
 use crate::{
     effects::{
         Effect, Stack,
-        hooks::{FinishFunction, ImageHook, Picture, Pixel, Surface, SurfaceFunction},
+        hooks::{
+            FinishFunction, ImageAt, ImageHook, PassHook, Picture, Pixel, Signs, Surface,
+            SurfaceFunction,
+        },
     },
     evaluator::Precision,
     params::Field,
@@ -213,6 +216,32 @@ impl SoundnessProbe {
                 };
                 hooks.image = Some(ImageHook {
                     finish: Arc::new(finish),
+                    ..exact
+                });
+            }
+            if let Some(exact) = hooks.passes.clone() {
+                let (recorder, probed) = (recorder.clone(), Arc::downgrade(effect));
+                let run = exact.run.clone();
+                let run = move |index: usize, pixels: &[ImageAt<'_>], words: &[u32]| {
+                    let written = run(index, pixels, words);
+                    if recorder.is_on.load(Ordering::Relaxed) {
+                        let judged = pixels.iter().zip(&written).filter(|(at, _)| {
+                            at.step_offset == 0.0 && at.input.signs == Signs::None
+                        });
+                        for (at, color) in judged {
+                            // What a pass writes may be data, so a negative number is none's fault.
+                            let made = |color: DVec4| Unsound::of(color.abs(), &[]);
+                            let retried =
+                                |_: bool, words: &[u32]| made(run(index, &[*at], words)[0]);
+                            let pixel = [at.x, at.y].map(|place| place as u32 * at.scale);
+                            let of_both = [made(*color), None];
+                            recorder.record(&probed, pixel, of_both, &retried, words);
+                        }
+                    }
+                    written
+                };
+                hooks.passes = Some(PassHook {
+                    run: Arc::new(run),
                     ..exact
                 });
             }

@@ -229,6 +229,12 @@ impl ImageAt<'_> {
             * (1.0 + DEPTH_ERROR * self.input.signs.at(x, y))
     }
 
+    /// How many meters farther a pixel of reversed depth `depth + by` is than one of `depth`.
+    pub fn meters_apart(&self, depth: f64, by: f64) -> f64 {
+        let [here, there] = [depth, depth + by].map(|depth| self.input.lens.meters(depth));
+        (there - here) * (1.0 + DEPTH_ERROR * self.input.signs.at(self.x, self.y))
+    }
+
     /// The normal of what a pixel of the picture shows, from its depth and those of its neighbors:
     /// world space, unit length, towards the viewer's side; zero where nothing is drawn.
     pub fn normal(&self, x: i64, y: i64) -> DVec3 {

@@ -30,6 +30,8 @@ pub struct TriangleSetup {
     pub center_error_m: f64,
     /// Position of that mean in the picture, 0 to 1; the middle where it lies behind the eye.
     pub center_screen: DVec2,
+    /// Bound of its error beside that of whole triangles, whose corners lie near the picture.
+    pub center_screen_error: f64,
 }
 
 impl TriangleSetup {
@@ -44,7 +46,8 @@ impl TriangleSetup {
             .map(|at| f64::from(*at).abs())
             .fold(0.0, f64::max);
         let shortest = f64::from(self.size[0].min(self.size[1]).max(1));
-        let center_screen = 24.0 * ROUNDING * (1.0 + reach / (256.0 * shortest));
+        let center_screen =
+            self.center_screen_error + 24.0 * ROUNDING * (1.0 + reach / (256.0 * shortest));
         ErrorBound {
             center_m: self.center_error_m,
             center_screen,

@@ -142,6 +142,10 @@ impl Host for PassHost<'_> {
                 result.copy_from_slice(&light.to_array().map(Word::from_f64));
                 return;
             }
+            18 => {
+                result[0] = Word::from_f64(at.meters_apart(place().x, place().y));
+                return;
+            }
             _ => {
                 return PictureHost(at.input.picture, &[]).external(index, lane, arguments, result);
             }

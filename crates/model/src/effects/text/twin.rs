@@ -30,7 +30,7 @@ const MAX_STEPS: u64 = 100_000_000;
 /// Functions of the library that read more than their arguments: of `lib/image`,
 /// `lib/image_pass`, `lib/image_direction`, `lib/image_kept` and `lib/panorama`, then of
 /// `lib/image_file`.
-pub const EXTERNALS: [&str; 20] = [
+pub const EXTERNALS: [&str; 21] = [
     "image_has",
     "image_at",
     "image_background",
@@ -49,11 +49,12 @@ pub const EXTERNALS: [&str; 20] = [
     "image_kept_at",
     "panorama_irradiance",
     "panorama_radiance",
+    "image_meters_apart",
     "image_file_size",
     "image_file_texel",
 ];
 /// Index of the first function of `lib/image_file`.
-const IMAGE_FILES: usize = 18;
+const IMAGE_FILES: usize = 19;
 /// How much the inputs of a color may be off on the f32 side, relative to the largest component of
 /// each: as a fraction of the step's offset.
 const INPUT_ERROR: f64 = 0.25;
