@@ -15,6 +15,7 @@ use super::{
 };
 use crate::{
     accuracy::Skinning,
+    effect_files::overreaching,
     frame::Frame,
     gpu::Capture,
     measure::{
@@ -52,6 +53,8 @@ pub struct Row {
     /// Pixels with a color channel over the preset's budget.
     pixels_over_tolerance: u64,
     frames: u32,
+    /// An effect of a file on the finished picture, where colors differ.
+    image_effect: Option<String>,
     /// What failed, one sentence each.
     pub failures: Vec<String>,
     /// What the preset allows to err without saying by how much: pinned options and the tier.
@@ -156,7 +159,13 @@ pub fn run(common: &Common, args: &Verify, streams: &mut Streams) -> Result<Exit
     rows.iter().for_each(|row| {
         row.failures.iter().for_each(|failure| {
             streams.note(&format!("{} with {}: {failure}", row.preset, row.option))
-        })
+        });
+        if let (false, Some(effect)) = (row.failures.is_empty(), &row.image_effect) {
+            streams.note(&format!(
+                "{} with {}: where the colors of {effect} lie on steps, and that is meant, let them: [test] max_pixels = {} and why; --output DIR shows which pixels differ",
+                row.preset, row.option, row.pixels_over_tolerance
+            ));
+        }
     });
     Ok(Exit::failed_if(
         rows.iter().any(|row| !row.failures.is_empty()),
@@ -197,6 +206,11 @@ pub fn check(
         // Before anything is drawn.
         oracle::can_judge(scene, &view, &stack, preset.accuracy.scale().factor())?;
     }
+    let image_effect = preset.stack.0.iter().find_map(|enabled| {
+        let effect = &enabled.effect;
+        let is_image = effect.hooks.passes.is_some() || effect.hooks.image.is_some();
+        (effect.is_of_file() && is_image).then(|| effect.name.clone())
+    });
     let volume = volume_fraction(&preset, scene)?;
     let (mut rows, mut first): (Vec<Row>, Option<(&str, Frame)>) = (Vec::new(), None);
     for option in backend.options(&preset) {
@@ -206,7 +220,10 @@ pub fn check(
         });
         let name = option.map_or("exact", Visibility::name);
         let capture = backend.capture(&pinned, scene)?;
-        let verdict = backend.judged(scene, &view, &stack, &capture)?;
+        let (verdict, overreaching) = overreaching(&stack, |stack| {
+            backend.judged(scene, &view, stack, &capture)
+        });
+        let verdict = verdict?;
         let pixels_over_tolerance = budget.pixels_over_tolerance(&verdict, &capture.frame);
         let mut failures = budget.faults(
             &verdict.report,
@@ -214,6 +231,12 @@ pub fn check(
             options.allows_any_band,
         );
         failures.extend(scaling_failure(&capture));
+        failures.extend(overreaching.iter().map(|(effect, factor)| {
+            format!(
+                "{} moves a vertex {factor:.2} times as far as its parameters with @unit(m) add up to, so that it may be cut off or culled; let it move less, or declare a parameter for the rest",
+                effect.name
+            )
+        }));
         failures.extend(budget.count_faults(&capture.frame, capture.layers.as_deref()));
         if !budget.refused.is_empty() {
             failures.push(format!(
@@ -258,6 +281,7 @@ pub fn check(
             option: name,
             accuracy: verdict.report,
             pixels_over_tolerance,
+            image_effect: image_effect.clone().filter(|_| pixels_over_tolerance > 0),
             frames: 1 + options.repeats,
             without_budget: if failures.is_empty() {
                 Vec::new()
