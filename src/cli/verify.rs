@@ -53,6 +53,8 @@ pub struct Row {
     /// Pixels with a color channel over the preset's budget.
     pixels_over_tolerance: u64,
     frames: u32,
+    /// An effect of a file on the finished picture, where colors differ.
+    image_effect: Option<String>,
     /// What failed, one sentence each.
     pub failures: Vec<String>,
     /// What the preset allows to err without saying by how much: pinned options and the tier.
@@ -173,7 +175,13 @@ fn tell_notes(preset_files: &[PresetFile], rows: &[Row], streams: &mut Streams) 
     rows.iter().for_each(|row| {
         row.failures.iter().for_each(|failure| {
             streams.note(&format!("{} with {}: {failure}", row.preset, row.option))
-        })
+        });
+        if let (false, Some(effect)) = (row.failures.is_empty(), &row.image_effect) {
+            streams.note(&format!(
+                "{} with {}: where the colors of {effect} lie on steps, and that is meant, let them: [test] max_pixels = {} and why; --output DIR shows which pixels differ",
+                row.preset, row.option, row.pixels_over_tolerance
+            ));
+        }
     });
 }
 
@@ -211,6 +219,11 @@ pub fn check(
         // Before anything is drawn.
         oracle::can_judge(scene, &view, &stack, preset.accuracy.scale().factor())?;
     }
+    let image_effect = preset.stack.0.iter().find_map(|enabled| {
+        let effect = &enabled.effect;
+        let is_image = effect.hooks.passes.is_some() || effect.hooks.image.is_some();
+        (effect.is_of_file() && is_image).then(|| effect.name.clone())
+    });
     let volume = volume_fraction(&preset, scene)?;
     let (mut rows, mut first): (Vec<Row>, Option<(&str, Frame)>) = (Vec::new(), None);
     for option in backend.options(&preset) {
@@ -220,10 +233,12 @@ pub fn check(
         });
         let name = option.map_or("exact", Visibility::name);
         let capture = backend.capture(&pinned, scene, false)?;
-        let (verdict, crossings) = effect_files::crossings(&stack, |stack| {
-            backend.judged(scene, &view, stack, &capture)
-        })
-        .map_err(CliError::usage)?;
+        let (judged, overreaching) = effect_files::overreaching(&stack, |stack| {
+            effect_files::crossings(stack, |stack| {
+                backend.judged(scene, &view, stack, &capture)
+            })
+        });
+        let (verdict, crossings) = judged.map_err(CliError::usage)?;
         let verdict = verdict?;
         let pixels_over_tolerance = budget.pixels_over_tolerance(&verdict, &capture.frame);
         let mut failures = budget.faults(
@@ -242,6 +257,12 @@ pub fn check(
                 failures.push(format!("{off} of 255 off {most} nearest layers"));
             }
         }
+        failures.extend(overreaching.iter().map(|(effect, factor)| {
+            format!(
+                "{} moves a vertex {factor:.2} times as far as its parameters with @unit(m) add up to, so that it may be cut off or culled; let it move less, or declare a parameter for the rest",
+                effect.name
+            )
+        }));
         failures.extend(budget.count_faults(&capture.frame, capture.layers.as_deref()));
         if !budget.refused.is_empty() {
             failures.push(format!(
@@ -287,6 +308,7 @@ pub fn check(
             option: name,
             accuracy: verdict.report,
             pixels_over_tolerance,
+            image_effect: image_effect.clone().filter(|_| pixels_over_tolerance > 0),
             frames: 1 + options.repeats,
             without_budget: if failures.is_empty() {
                 Vec::new()

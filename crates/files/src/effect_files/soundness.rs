@@ -16,7 +16,7 @@ use crate::{
     effects::{
         Effect, Stack,
         hooks::{
-            FinishFunction, ImageAt, ImageHook, PassHook, Picture, Pixel, Signs, Surface,
+            FinishFunction, Hooks, ImageAt, ImageHook, PassHook, Picture, Pixel, Signs, Surface,
             SurfaceFunction,
         },
     },
@@ -97,7 +97,7 @@ fn of_surface(s: &Surface) -> Outcome {
 /// anything that shades its samples.
 ///
 /// # Errors
-/// The text of an effect of a file cannot be evaluated in f32.
+/// The text of an effect cannot be evaluated in f32.
 pub fn crossings<T>(
     stack: &Stack,
     draw: impl FnOnce(&Stack) -> T,
@@ -131,19 +131,13 @@ impl SoundnessProbe {
     fn of(effect: &Arc<Effect>) -> Result<Arc<Self>, EvaluatedError> {
         static KNOWN: Probes<SoundnessProbe> = Mutex::new(Vec::new());
         kept(&KNOWN, effect, || {
-            // The kernels are f32, and the text says what they do. Built-in effects have an f64
-            // function that is not their text.
-            let single = if effect.is_of_file() {
-                Some(evaluated_in(
-                    &Library::of_process(),
-                    effect,
-                    Precision::Single,
-                )?)
-            } else {
-                None
+            // The kernels are f32, and the text says what they do.
+            let is_colored = effect.hooks.surface.is_some() || effect.hooks.image.is_some();
+            let single = match is_colored {
+                true => evaluated_in(&Library::of_process(), effect, Precision::Single)?,
+                false => Hooks::default(),
             };
-            let (single_surface, single_image) =
-                single.map_or((None, None), |hooks| (hooks.surface, hooks.image));
+            let (single_surface, single_image) = (single.surface, single.image);
             let recorder = Arc::new(Recorder::default());
             let mut hooks = effect.hooks.clone();
             if let Some(exact) = hooks.surface.clone() {

@@ -318,6 +318,25 @@ mod tests {
         }
     }
 
+    /// Trowbridge and Reitz 1975 as in Walter and others 2007, equation 33; Heitz 2014, equations 72
+    /// and 99; Schlick 1994: computed from angles, apart from this text.
+    #[test]
+    fn facets_reflect_as_their_authors_say() {
+        for (alpha, straight, [view, toward, turned], expected) in [
+            (0.25, 0.04, [40.0, 40.0, 180.0], 0.271_334_861),
+            (0.25, 0.04, [70.0, 65.0, 150.0], 0.075_818_778_8),
+            (0.6, 0.5, [20.0, 55.0, 40.0], 0.210_539_752),
+            (0.04, 0.9, [80.0, 79.0, 180.0], 3933.829_54),
+        ] {
+            let cosine = |deg: f64| libm::cos(deg.to_radians());
+            let (view, toward) =
+                (around(cosine(view), 0.0), around(cosine(toward), turned / 360.0));
+            let reflector = Reflector::new(DVec3::ZERO, DVec3::splat(straight), 1.0, alpha);
+            let seen = reflector.facets(view.z, DVec3::Z, view, toward).x;
+            assert!((seen / expected - 1.0).abs() < 1e-8, "{seen}, and {expected} is right");
+        }
+    }
+
     #[test]
     fn light_goes_the_same_way_back() {
         let reflector = |alpha| {
