@@ -17,7 +17,8 @@ use crate::app::{
         fields::dot,
         form::words_ui,
         icons::{Icon, icon_button},
-        panel::{at_right, entry},
+        panel::{at_right, entry, is_phone},
+        text::with_own_paths,
         theme::{self, ThemeChoice},
     },
 };
@@ -28,9 +29,6 @@ pub struct TopBar;
 
 /// Below this width of the window the adapter is a dot, points.
 const NARROW: f32 = 1080.0;
-
-/// Below this width there is no room for time and error beside the menus, points.
-const PHONE: f32 = 600.0;
 
 /// Room for milliseconds and for a count of wrong pixels, points: a number that comes or changes
 /// moves nothing beside it.
@@ -92,16 +90,23 @@ const MENUS: [(&str, &[&[Action]]); 6] = {
 
 impl Panel for TopBar {
     fn ui(&mut self, ui: &mut Ui, state: &State, commands: &Commands) {
+        let is_phone = is_phone(ui.ctx());
         ui.horizontal(|ui| {
             ui.set_min_height(28.0);
-            menus_ui(ui, state, commands);
+            if is_phone {
+                ui.menu_button("Menu", |ui| menus_ui(ui, state, commands));
+            } else {
+                menus_ui(ui, state, commands);
+                ui.add_space(theme::HALF);
+                steps_ui(ui, state, commands);
+            }
             ui.add_space(theme::HALF);
             at_right(ui, |ui| {
                 ui.spacing_mut().item_spacing.x = 6.0;
                 adapter_ui(ui, state, ui.ctx().content_rect().width() < NARROW);
-                ui.separator();
-                anti_aliasing_ui(ui, state, commands);
-                if ui.ctx().content_rect().width() >= PHONE {
+                if !is_phone {
+                    ui.separator();
+                    anti_aliasing_ui(ui, state, commands);
                     cost_ui(ui, state, commands);
                 }
                 // What is left belongs to the name, which is cut if it is too long.
@@ -117,7 +122,9 @@ fn menus_ui(ui: &mut Ui, state: &State, commands: &Commands) {
     ui.spacing_mut().item_spacing.x = 2.0;
     for (title, groups) in MENUS {
         ui.menu_button(title, |ui| {
-            ui.set_min_width(220.0);
+            if !is_phone(ui.ctx()) {
+                ui.set_min_width(220.0);
+            }
             // In a low window, or with large texts, a menu scrolls.
             let height = ui.ctx().content_rect().height() - 64.0;
             egui::ScrollArea::vertical()
@@ -136,7 +143,10 @@ fn menus_ui(ui: &mut Ui, state: &State, commands: &Commands) {
                 });
         });
     }
-    ui.add_space(theme::HALF);
+}
+
+/// Buttons for the presets beside the open one, and to undo.
+fn steps_ui(ui: &mut Ui, state: &State, commands: &Commands) {
     let can_undo = state.history.can_undo();
     for (icon, action, is_enabled) in [
         (Icon::Left, Action::PreviousPreset, true),
@@ -150,13 +160,21 @@ fn menus_ui(ui: &mut Ui, state: &State, commands: &Commands) {
     }
 }
 
-/// The entry of an action in a menu.
-fn entry_ui(ui: &mut Ui, action: Action, state: &State, commands: &Commands) {
-    let button = entry(action.label(), 208.0).shortcut_text(action.shortcut_text());
+/// An action with its shortcut; a phone has no keys.
+fn action_ui(ui: &mut Ui, action: Action, width: f32, commands: &Commands) {
+    let button = match is_phone(ui.ctx()) {
+        true => entry(action.label(), theme::ROW),
+        false => entry(action.label(), width).shortcut_text(action.shortcut_text()),
+    };
     if ui.add(button).accessible_name(action.label()).clicked() {
         commands.perform(action);
         ui.close();
     }
+}
+
+/// The entry of an action in a menu.
+fn entry_ui(ui: &mut Ui, action: Action, state: &State, commands: &Commands) {
+    action_ui(ui, action, 208.0, commands);
     if action == Action::Open {
         ui.menu_button("Open recent", |ui| recents_ui(ui, state, commands));
     }
@@ -185,7 +203,7 @@ fn recents_ui(ui: &mut Ui, state: &State, commands: &Commands) {
             .min_size(vec2(280.0, theme::ROW));
         let button = ui
             .add_enabled(!is_missing, button)
-            .on_hover_text(path.display().to_string());
+            .on_hover_text(with_own_paths(path.display().to_string()));
         if button
             .on_disabled_hover_text(format!("{} is gone", path.display()))
             .accessible_name(format!("Recent {name}"))
@@ -214,11 +232,7 @@ fn looks_ui(ui: &mut Ui, chosen: ThemeChoice, commands: &Commands) {
         }
         ui.separator();
         for action in [Action::ScaleUp, Action::ScaleDown, Action::ScaleReset] {
-            let button = entry(action.label(), 240.0).shortcut_text(action.shortcut_text());
-            if ui.add(button).accessible_name(action.label()).clicked() {
-                commands.perform(action);
-                ui.close();
-            }
+            action_ui(ui, action, 240.0, commands);
         }
     });
 }
@@ -229,7 +243,7 @@ fn name_ui(ui: &mut Ui, state: &State, commands: &Commands) {
     let open = &state.session.preset_file;
     let name = theme::strong(open.title()).strong();
     let file = match (&open.path, open.read_only) {
-        (Some(path), _) => path.display().to_string(),
+        (Some(path), _) => with_own_paths(path.display().to_string()),
         (None, true) => format!("{}, built in. Save asks for a file name.", open.id),
         (None, false) => "Not saved yet".into(),
     };

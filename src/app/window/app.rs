@@ -10,7 +10,11 @@ use std::{
 use egui::{self, Ui, ViewportCommand};
 
 use super::{
-    escape::escape, fold::Fold, input, loss::LossFlag, pointer_frames::PointerFrames,
+    escape::escape,
+    fold::{Fold, handles_ui},
+    input,
+    loss::LossFlag,
+    pointer_frames::PointerFrames,
     typing::HeldTyping,
 };
 use crate::app::panels::panel::Panel;
@@ -41,7 +45,7 @@ use crate::{
             state::{Clipboard, Closing, State},
             ui_frames::UiFrames,
         },
-        widgets::theme,
+        widgets::{panel::is_phone, theme},
     },
     effect_files::has_f32_error,
     gpu::device::AdapterChoice,
@@ -258,6 +262,12 @@ impl App {
         );
         if title != self.title {
             ctx.send_viewport_cmd(ViewportCommand::Title(title.clone()));
+            #[cfg(target_arch = "wasm32")]
+            crate::app::shell::page::tell_shown(
+                &title,
+                session.is_modified(),
+                &session.preset_file,
+            );
             self.title = title;
         }
     }
@@ -419,6 +429,11 @@ impl App {
             .frame(theme::bar_frame())
             .show_separator_line(false)
             .show(ui, |ui| self.panel_ui(ui, |panels| &mut panels.topbar));
+        if is_phone(ui.ctx()) {
+            egui::Panel::bottom("handles")
+                .frame(theme::bar_frame())
+                .show(ui, |ui| handles_ui(ui, &mut self.state.open));
+        }
         let height = self.panels.timeline.height(&self.state.session);
         let timeline = egui::Panel::bottom("timeline")
             .frame(theme::bar_frame())
