@@ -315,14 +315,15 @@ fn stretch(preset: &mut Preset, scene: &Scene, seed: u32) {
             shake(rng, preset.stack.enable(&effect), Values::Allowed);
         }
     }
-    if rng.one_in(8) {
-        preset.clock.time_s = rng.magnitude([0.0, LATEST_S]);
-    }
     if rng.one_in(6) {
         limit_an_effect(rng, &mut preset.stack, scene);
     }
     if rng.one_in(6) {
         animate(rng, preset);
+    }
+    // Particles fly from the first second on, so they would take minutes.
+    if rng.one_in(8) && preset.stack.get("particles").is_none() {
+        preset.clock.time_s = rng.magnitude([0.0, LATEST_S]);
     }
 }
 
