@@ -9,7 +9,7 @@ struct Type {
     /// How far the rings stand out.
     @range(0.0, 0.5, 0.05) @hard(0.0, 10.0) @unit(m) height_m: f32,
     /// Rings in a meter. Its unit is not m, so it does not count as a length.
-    @range(0.05, 100.0, 2.5) @unit(/m) @log rings: f32,
+    @range(0.05, 100.0, 2.5) @unit(per m) @log rings: f32,
     /// Where the rings begin, in turns.
     @range(0.0, 1.0, 0.0) phase: f32,
 }
