@@ -14,7 +14,7 @@ use super::{
     streams::{Streams, number, table},
 };
 use crate::{
-    accuracy::Skinning,
+    accuracy::{Skinning, Transparency},
     frame::Frame,
     gpu::Capture,
     measure::{
@@ -62,7 +62,7 @@ pub struct Row {
 }
 
 pub fn run(common: &Common, args: &Verify, streams: &mut Streams) -> Result<Exit, CliError> {
-    let preset_files = presets(common, &args.inputs, streams)?;
+    let mut preset_files = presets(common, &args.inputs, streams)?;
     let mut backend = Backend::open(common, streams)?;
     if let Some(folder) = &args.output {
         std::fs::create_dir_all(folder).map_err(|e| {
@@ -77,7 +77,7 @@ pub fn run(common: &Common, args: &Verify, streams: &mut Streams) -> Result<Exit
     };
     let bar = streams.progress(preset_files.len() as u64);
     let mut rows = Vec::new();
-    for preset_file in &preset_files {
+    for preset_file in &mut preset_files {
         bar.set_message(preset_file.id.clone());
         let verified = scene_of(common, preset_file, streams)
             .and_then(|scene| check(common, &options, preset_file, &scene, &mut backend));
@@ -105,7 +105,15 @@ pub fn run(common: &Common, args: &Verify, streams: &mut Streams) -> Result<Exit
     } else {
         streams.text(&text(&rows, backend.class()))?;
     }
-    for preset_file in &preset_files {
+    tell_notes(&preset_files, &rows, streams);
+    Ok(Exit::failed_if(
+        rows.iter().any(|row| !row.failures.is_empty()),
+    ))
+}
+
+/// Says of each row what its figures do not.
+fn tell_notes(preset_files: &[PresetFile], rows: &[Row], streams: &mut Streams) {
+    for preset_file in preset_files {
         let names = judged_by_own_text(&preset_file.preset).join(", ");
         if !names.is_empty() {
             streams.note(&format!(
@@ -158,9 +166,6 @@ pub fn run(common: &Common, args: &Verify, streams: &mut Streams) -> Result<Exit
             streams.note(&format!("{} with {}: {failure}", row.preset, row.option))
         })
     });
-    Ok(Exit::failed_if(
-        rows.iter().any(|row| !row.failures.is_empty()),
-    ))
 }
 
 /// The effects of a preset that have no independent twin: the oracle evaluates their own text in
@@ -205,7 +210,7 @@ pub fn check(
             preset.accuracy.pins.with(option)
         });
         let name = option.map_or("exact", Visibility::name);
-        let capture = backend.capture(&pinned, scene)?;
+        let capture = backend.capture(&pinned, scene, false)?;
         let verdict = backend.judged(scene, &view, &stack, &capture)?;
         let pixels_over_tolerance = budget.pixels_over_tolerance(&verdict, &capture.frame);
         let mut failures = budget.faults(
@@ -214,6 +219,16 @@ pub fn check(
             options.allows_any_band,
         );
         failures.extend(scaling_failure(&capture));
+        let most = pinned.accuracy.pins.option();
+        if let Some(most) = most.and_then(Transparency::most_layers) {
+            let mut nearest = capture.clone();
+            nearest.frame.glass = capture.frame.glass.nearest(most as usize);
+            let off = backend.judged(scene, &view, &stack, &nearest)?;
+            let off = off.report.max_color_delta;
+            if off > 1 {
+                failures.push(format!("{off} of 255 off {most} nearest layers"));
+            }
+        }
         failures.extend(budget.count_faults(&capture.frame, capture.layers.as_deref()));
         if !budget.refused.is_empty() {
             failures.push(format!(
@@ -223,7 +238,7 @@ pub fn check(
         }
         let is_repeatable = preset.stack.is_repeatable() && !preset.accuracy.is_left_to_chance();
         for repeat in 1..=options.repeats {
-            if is_repeatable && backend.capture(&pinned, scene)?.frame != capture.frame {
+            if is_repeatable && backend.capture(&pinned, scene, true)?.frame != capture.frame {
                 failures.push(format!(
                     "frame {} is not bit-identical to the first",
                     repeat + 1

@@ -482,7 +482,7 @@ fn escape_closes_the_extreme_cases_and_the_comparison() {
         return;
     };
     press(&mut lab, Modifiers::NONE, Key::L);
-    click(&mut lab, Role::Button, "View");
+    click(&mut lab, Role::Button, "Judge");
     click(&mut lab, Role::Button, "Run extreme cases…");
     assert!(
         lab.query_by_role_and_label(Role::TextInput, "Cases")

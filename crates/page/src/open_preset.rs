@@ -52,8 +52,9 @@ impl OpenPreset {
     /// # Errors
     /// One sentence on what is wrong with the model.
     pub fn of_model(path: &str) -> Result<OpenPreset, JsError> {
-        let file = model_file(path)?;
+        let mut file = model_file(path)?;
         let scene = preset_file::load_scene(&file.preset, None)?;
+        file.settle(&scene, true);
         Ok(Self { file, scene })
     }
 
@@ -65,7 +66,7 @@ impl OpenPreset {
         let (look, own) = (&self.file, model_file(path)?);
         let scene = preset_file::load_scene(&own.preset, None)?;
         let boxes = [
-            &preset_file::scene_bounds(&look.preset.scene, None)?,
+            &preset_file::scene_bounds(&look.preset.scene, look.preset.parts.up, None)?,
             &scene.content_bounds(),
         ];
         let fit = look.fit_to(&own, boxes, Some(&scene));
@@ -201,7 +202,7 @@ impl OpenPreset {
     pub fn orbit(&mut self, aside_deg: f64, up_deg: f64, closer: f64) {
         let [width, height] = self.file.preset.output.size;
         let aspect = f64::from(width.max(1)) / f64::from(height.max(1));
-        let mut preset = self.file.preset.in_meters(&self.scene).into_owned();
+        let mut preset = self.file.preset.metric(&self.scene).into_owned();
         let mut camera = preset.camera_for(&self.scene, aspect);
         orbit(&mut camera, -aside_deg.to_radians(), up_deg.to_radians());
         zoom(&mut camera, closer);

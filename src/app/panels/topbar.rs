@@ -22,6 +22,7 @@ use crate::app::{
         theme::{self, ThemeChoice},
     },
 };
+use crate::preset_file::{PLAIN, PresetFile};
 
 /// The bar at the top: menus, the open preset, the adapter, and the cost and error of the picture.
 pub struct TopBar;
@@ -35,13 +36,13 @@ const TIME_WIDTH: f32 = 104.0;
 const ERROR_WIDTH: f32 = 96.0;
 
 /// Menus with the groups of their entries.
-const MENUS: [(&str, &[&[Action]]); 4] = {
+const MENUS: [(&str, &[&[Action]]); 6] = {
     use Action::*;
     [
         (
             "File",
             &[
-                &[Open, OpenWithScene],
+                &[New, Open, OpenWithScene, Plain],
                 &[Save, SaveAs, Export, Film],
                 &[CopyPreset, PastePreset, CopyLink, ExportAll],
                 &[Quit],
@@ -52,6 +53,7 @@ const MENUS: [(&str, &[&[Action]]); 4] = {
             &[
                 &[Undo, Redo],
                 &[AddEffect, NewEffect, Randomize, RandomizeWindow, Sweep],
+                &[Palette, Settings],
             ],
         ),
         (
@@ -70,22 +72,19 @@ const MENUS: [(&str, &[&[Action]]); 4] = {
                     AddBookmark,
                     NextBookmark,
                 ],
-                &[
-                    Verify,
-                    Overlays,
-                    NextPixel,
-                    PreviousPixel,
-                    Handles,
-                    BoundingBox,
-                    Axes,
-                    Grid,
-                    Compare,
-                    FlipAb,
-                ],
-                &[Panels, Timeline, Trade, Timing, Log],
-                &[Extremes, Review, Palette, CheatSheet, Settings],
+                &[Handles, BoundingBox, Axes, Grid],
+                &[Panels, Timeline, Timing, Log],
             ],
         ),
+        (
+            "Judge",
+            &[
+                &[Verify, Overlays, NextPixel, PreviousPixel],
+                &[Compare, FlipAb],
+                &[Trade, Extremes, Review],
+            ],
+        ),
+        ("Help", &[&[Guide, CheatSheet], &[Report, About]]),
     ]
 };
 
@@ -112,7 +111,7 @@ impl Panel for TopBar {
                 }
                 // What is left belongs to the name, which is cut if it is too long.
                 ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
-                    name_ui(ui, state)
+                    name_ui(ui, state, commands)
                 });
             });
         });
@@ -126,16 +125,22 @@ fn menus_ui(ui: &mut Ui, state: &State, commands: &Commands) {
             if !is_phone(ui.ctx()) {
                 ui.set_min_width(220.0);
             }
-            for (index, actions) in groups.iter().enumerate() {
-                if index > 0 {
-                    ui.separator();
-                }
-                let actions = actions.iter().filter(|action| action.is_here());
-                actions.for_each(|action| entry_ui(ui, *action, state, commands));
-            }
-            if title == "View" {
-                looks_ui(ui, state.settings.theme, commands);
-            }
+            // In a low window, or with large texts, a menu scrolls.
+            let height = ui.ctx().content_rect().height() - 64.0;
+            egui::ScrollArea::vertical()
+                .max_height(height)
+                .show(ui, |ui| {
+                    for (index, actions) in groups.iter().enumerate() {
+                        if index > 0 {
+                            ui.separator();
+                        }
+                        let actions = actions.iter().filter(|action| action.is_here());
+                        actions.for_each(|action| entry_ui(ui, *action, state, commands));
+                    }
+                    if title == "View" {
+                        looks_ui(ui, state.settings.theme, commands);
+                    }
+                });
         });
     }
 }
@@ -233,7 +238,7 @@ fn looks_ui(ui: &mut Ui, chosen: ThemeChoice, commands: &Commands) {
 }
 
 /// Name of the preset, and whether it has unsaved changes.
-fn name_ui(ui: &mut Ui, state: &State) {
+fn name_ui(ui: &mut Ui, state: &State, commands: &Commands) {
     ui.spacing_mut().item_spacing.x = 6.0;
     let open = &state.session.preset_file;
     let name = theme::strong(open.title()).strong();
@@ -249,16 +254,34 @@ fn name_ui(ui: &mut Ui, state: &State) {
         true if width > 150.0 => 70.0,
         true => 16.0,
     };
+    let look = if width - rest > 120.0 { 46.0 } else { 0.0 };
     ui.scope(|ui| {
-        ui.set_max_width((width - rest).max(0.0));
+        ui.set_max_width((width - rest - look).max(0.0));
         ui.add(egui::Label::new(name).truncate().sense(Sense::hover()))
             .on_hover_text(file);
     });
+    if look > 0.0 {
+        plain_ui(ui, open, is_modified, commands);
+    }
     if is_modified {
         dot(ui, theme::accent());
         if rest > 16.0 {
             ui.label(theme::weak("unsaved"));
         }
+    }
+}
+
+/// A button of the plain look, which is pressed while that is on. Of another look the name tells.
+fn plain_ui(ui: &mut Ui, open: &PresetFile, is_modified: bool, commands: &Commands) {
+    let is_on = open.look_id() == PLAIN && !is_modified;
+    let hint = match is_on {
+        true => "The plain look is on: the scene's own materials under a sun with soft shadows",
+        false => "Show this scene in the plain look",
+    };
+    let button = egui::Button::new("Plain").small().selected(is_on);
+    let button = ui.add(button).on_hover_text(hint);
+    if button.accessible_name(Action::Plain.label()).clicked() && !is_on {
+        commands.perform(Action::Plain);
     }
 }
 
@@ -318,7 +341,7 @@ fn cost_ui(ui: &mut Ui, state: &State, commands: &Commands) {
     let (time, hint) = time_line(Some(&state.picture.screen));
     let time = theme::strong(time);
     number_ui(ui, TIME_WIDTH, Align::Max, time, hint);
-    pins_ui(ui, &state.session.preset().accuracy.pins.words());
+    pins_ui(ui, state);
 }
 
 /// A text at the left (`Min`) or right (`Max`) of a room of at least `width` points, in a narrow window
@@ -368,14 +391,27 @@ fn verifying_ui(ui: &mut Ui, progress: &Progress, commands: &Commands) {
     ui.request_repaint_after_secs(0.1);
 }
 
-/// Accuracy options that the preset pins, as `coverage=fixed8 depth=log16`.
-fn pins_ui(ui: &mut Ui, words: &str) {
-    let text = match words.split(' ').count() {
+/// Accuracy options that the preset pins, as `coverage=fixed8` or `2 options pinned by you`: the
+/// file has some of them, and the person has chosen the others since.
+fn pins_ui(ui: &mut Ui, state: &State) {
+    let pins = state.session.preset().accuracy.pins;
+    let words = pins.words();
+    let filed = state.session.as_filed().preset.accuracy.pins.words();
+    let is_filed = |word: &&str| filed.split(' ').any(|known| known == *word);
+    let (of_file, own): (Vec<&str>, Vec<&str>) = words.split(' ').partition(is_filed);
+    let text = match (of_file.len(), own.len()) {
         _ if words.is_empty() => return,
-        1 => words.to_owned(),
-        count => format!("{count} options pinned"),
+        (0, 1) | (1, 0) => words.clone(),
+        (count, 0) => format!("{count} options pinned by the preset"),
+        (0, count) => format!("{count} options pinned by you"),
+        (file, own) => format!("{} options pinned, {own} by you", file + own),
     };
+    let by = |who: &str, words: &[&str]| match words {
+        [] => String::new(),
+        words => format!("Pinned by {who}:\n{}\n", words.join("\n")),
+    };
+    let hint = by("the preset", &of_file) + &by("you, not saved yet", &own);
     ui.label(theme::weak("·"));
     ui.label(RichText::new(text).size(12.0).color(theme::accent()))
-        .on_hover_text(words.replace(' ', "\n"));
+        .on_hover_text(hint.trim_end());
 }

@@ -35,7 +35,7 @@ impl Metric {
 
     pub const fn name(self) -> &'static str {
         match self {
-            Self::Wrong => "wrong pixels",
+            Self::Wrong => "by rounding",
             Self::Color => "color difference",
             Self::Coverage => "holes and doubles",
             Self::Light => "wrong light",

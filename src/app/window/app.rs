@@ -145,6 +145,7 @@ impl App {
         panels.browser.show(settings.browsing);
         panels.film.begin_with(settings.film.clone());
         let trust = Trust::default();
+        let is_named = options.opened.is_some() || options.open.is_some();
         let start = recovery::start(
             options.opened,
             options.open.as_deref(),
@@ -154,6 +155,7 @@ impl App {
         );
         ask_about(start.asks, start.crashed, &mut panels.dialogs);
         let mut session = start.session;
+        session.chose_look = is_named;
         // The start preset plays, unless on a software adapter, which draws moving pictures at half
         // their size: there its own moment stands whole. A preset that the user named does not play.
         session.playback.playing = options.open.is_none()
@@ -607,6 +609,7 @@ impl eframe::App for App {
         self.panel_ui(ui, |panels| &mut panels.randomize);
         self.panel_ui(ui, |panels| &mut panels.sweep);
         self.panel_ui(ui, |panels| &mut panels.film);
+        self.panel_ui(ui, |panels| &mut panels.help);
         self.request_thumbnail(&ctx);
         self.request_precision(&ctx, is_held || self.panels.film.is_exporting());
         let compare = &self.panels.viewport.compare;

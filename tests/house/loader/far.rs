@@ -3,10 +3,10 @@
 
 use glam::{DMat4, DVec3};
 use rasterlab::{
-    effects::shadow,
+    effects::{Effect, shadow},
     frame::Frame,
     oracle,
-    preset::Preset,
+    preset::{LengthUnit, Preset},
     scene::{
         Ground, Scene,
         mesh_files::{LoadModel, load_obj, load_ply, load_stl},
@@ -184,7 +184,8 @@ fn turning_rooms_grounds_and_shadows_are_about_the_middle_of_what_is_shown() {
     let twin = |place: [f64; 3], preset: &Preset| {
         let scene = stored([0.0; 3])
             .with("/nodes/0/translation", json!(place))
-            .scene();
+            .scene()
+            .counted();
         let scene = match &preset.ground {
             Some(ground) => scene.on_ground(ground),
             None => scene,
@@ -209,11 +210,34 @@ fn turning_rooms_grounds_and_shadows_are_about_the_middle_of_what_is_shown() {
         room: 1.5,
         ..turned.clone()
     };
-    for (what, mut preset) in [("spin", turned), ("ground", standing), ("room", inside)] {
+    let with = |effect: &str, values: &[(&str, f64)]| {
+        let mut preset = turned.clone();
+        let enabled = preset.stack.enable(Effect::named(effect));
+        for (name, value) in values {
+            enabled.set(name, &[*value]);
+        }
+        preset
+    };
+    let wobbling = with("wobble", &[("amplitude_m", 0.2), ("wavelength_m", 0.7)]);
+    let hatched = with("hatch", &[("space", 1.0), ("dark", 0.4)]);
+    let mut attracted = with("particles", &[("radius_m", 0.03)]);
+    attracted.unit = LengthUnit::Scene;
+    for (what, mut preset) in [
+        ("spin", turned),
+        ("ground", standing),
+        ("room", inside),
+        ("wobble", wobbling),
+        ("hatch", hatched),
+        ("particles", attracted),
+    ] {
         preset.stack.enable(&shadow::EFFECT);
         let expected = twin([0.0; 3], &preset);
         assert!(expected.covered() > 300, "{what}");
-        for place in [[10.0, 0.0, 0.0], [-4096.0, 0.0, 512.0]] {
+        for place in [
+            [10.0, 0.0, 0.0],
+            [-4096.0, 0.0, 512.0],
+            [453_120.0, 128.0, -5_412_352.0],
+        ] {
             let given = twin(place, &preset);
             assert_eq!(
                 given.triangle_id, expected.triangle_id,

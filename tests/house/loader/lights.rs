@@ -16,7 +16,7 @@ use serde_json::{Value, json};
 use super::model::*;
 
 /// The square, and a node for each light of a list.
-fn lit(lights: &str) -> Model {
+pub fn lit(lights: &str) -> Model {
     let lights: Value = serde_json::from_str(&format!("[{lights}]")).expect("lights");
     let count = lights.as_array().map_or(0, Vec::len);
     let mut model = Model::square()
@@ -123,7 +123,7 @@ fn what_is_left_out_or_too_strong_is_one_note() {
             lamp,
             "/nodes/1/translation [0.5,0.5,8]",
             1,
-            "its lights are some 3e2 times as strong as what a picture holds; studio.lights = 4e-3 dims them",
+            "its lights are some 3e2 times as strong as what a picture holds; studio.lights = 4e-3 dims them, as in the plain look",
         ),
         (
             r#"{"type":"directional"}"#,
