@@ -234,9 +234,7 @@ pub fn check(
         let name = option.map_or("exact", Visibility::name);
         let capture = backend.capture(&pinned, scene, false)?;
         let (judged, overreaching) = effect_files::overreaching(&stack, |stack| {
-            effect_files::crossings(stack, |stack| {
-                backend.judged(scene, &view, stack, &capture)
-            })
+            effect_files::crossings(stack, |stack| backend.judged(scene, &view, stack, &capture))
         });
         let (verdict, crossings) = judged.map_err(CliError::usage)?;
         let verdict = verdict?;

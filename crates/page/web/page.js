@@ -34,6 +34,8 @@ function trouble(error) {
   if (isEmbed) caption.append(" · ", link("rasterlab", "./"));
   if (opened || isAgain || !find("stage")) return;
   // What was asked for is not there: home and the gallery lead on.
+  oracle.remove();
+  find("door").href = "window.html";
   find("name").textContent = "Nothing to show here";
   find("about").replaceChildren("Go ", link("home", "./"), ", or choose from the gallery.");
   still.hidden = true;

@@ -244,9 +244,8 @@ fn turning_rooms_grounds_and_shadows_are_about_the_middle_of_what_is_shown() {
                 "{what} at {place:?}"
             );
             let differing = given.color.iter().zip(&expected.color);
-            let apart = |(a, b): &(&[u8; 4], &[u8; 4])| {
-                a.iter().zip(*b).any(|(a, b)| a.abs_diff(*b) > 1)
-            };
+            let apart =
+                |(a, b): &(&[u8; 4], &[u8; 4])| a.iter().zip(*b).any(|(a, b)| a.abs_diff(*b) > 1);
             // A particle is kept as f32, so the edge of its shadow may take another side.
             let allowed = if what == "particles" { 4 } else { 0 };
             let pixels = differing.filter(apart).count();
