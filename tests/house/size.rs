@@ -25,11 +25,11 @@ const RUST: &[(&str, u64)] = &[
     // The first look at a model (15): the axis that is up (9), frames that fill the picture, cameras that
     // crop, lights that are too strong, and the point from which patterns count. Ten more effects have no
     // Rust any more (-27).
-    // crop, lights that are too strong, and the point from which patterns count.
     // Blocks without a brace, and the formulas of facets in numbers (2).
     ("crates/model", 1_470_000),
     ("crates/one_thread", 4_100),
     // Pixels, vertices and samples of a row handed on together (6).
+    // Image passes over the ends of what they read (5), for a share of the picture that was let off.
     ("crates/oracle", 472_500),
     // What a model has lost and how many pixels a preset allows to differ are told (1); the canvas of the
     // adapter's own rasterizer went for it.
@@ -40,16 +40,16 @@ const RUST: &[(&str, u64)] = &[
     // tiers that are the same, times of a picture in several sizes (6). Paid in part: contact sheets
     // left src/cli (6), and numbers per million the folder of accuracy (1).
     // Where the pointer is, for effects (1), paid by crates/model.
-    // The editor indents and keeps its line numbers in view; f32 errors of built-in effects (3).
-    // left src/cli (6), and numbers per million the folder of accuracy (1). A phone's one menu and
-    // handles, and the address of a page (3).
+    // The editor indents and keeps its line numbers in view; f32 errors of built-in effects (3). A
+    // phone's one menu and handles, and the address of a page (3).
     ("src/app", 1_319_000),
     // Vertex effects beyond their meters, and what to do about steps of image effects (1).
     ("src/cli", 224_000),
     // Random presets and the cases that need code, which the product had: crates/bench lost 322 KB.
+    // Far cameras, pictures of few pixels and long chains of passes (4).
     ("fuzz", 289_500),
     ("tests/common", 18_000),
-    // Random programs with conversions on the adapter and in the evaluator (4).
+    // Random programs with conversions on the adapter and in the evaluator (4); extremes of passes (3).
     ("tests/exact", 307_500),
     // What files hold is tried in tables: 59 KB of transcripts and tables stand in files beside the tests.
     // First looks at models (8).
