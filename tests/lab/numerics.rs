@@ -14,13 +14,13 @@ const PRESET: &str =
 
 /// The number of the last line of errors in the inspector, which is that of the ink.
 fn error(lab: &Lab) -> Option<String> {
-    let nodes = lab.query_all_by_role(Role::Button).filter_map(|node| {
+    let mut nodes = lab.query_all_by_role(Role::Button).filter_map(|node| {
         node.accesskit_node()
             .label()
             .filter(|label| label.starts_with("f32 error: "))
     });
     nodes
-        .last()
+        .next_back()
         .map(|label| label.trim_start_matches("f32 error: ").to_owned())
 }
 
