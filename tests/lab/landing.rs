@@ -284,7 +284,7 @@ fn a_model_is_plain_until_a_look_is_chosen_and_after_a_click() {
         (stack(&lab), scene(&lab)),
         (plain.clone(), SceneSource::File(model))
     );
-    assert!(!lab.state().preset_file().is_modified() && lab.state().preset_file().is_plain());
+    assert!(lab.query_by_label("unsaved").is_none() && lab.state().preset_file().is_plain());
     let hatch = gallery("hatch");
     choose(&mut lab, hatch.title(), Modifiers::NONE);
     let other = folder.path().join("other.glb");

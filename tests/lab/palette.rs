@@ -341,6 +341,7 @@ fn every_button_and_menu_entry_is_in_the_palette() {
         "fold ",
         "mute ",
         "apply ",
+        "f32 error: ",
         "drag ",
         "more of ",
         "keys of ",

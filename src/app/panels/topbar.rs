@@ -402,6 +402,10 @@ fn pins_ui(ui: &mut Ui, state: &State) {
     let text = match (of_file.len(), own.len()) {
         _ if words.is_empty() => return,
         (0, 1) | (1, 0) => words.clone(),
+        // The hint says by whom.
+        (file, own) if ui.ctx().content_rect().width() < NARROW => {
+            format!("{} options pinned", file + own)
+        }
         (count, 0) => format!("{count} options pinned by the preset"),
         (0, count) => format!("{count} options pinned by you"),
         (file, own) => format!("{} options pinned, {own} by you", file + own),
