@@ -257,7 +257,7 @@ pub fn check(
         }
         failures.extend(overreaching.iter().map(|(effect, factor)| {
             format!(
-                "{} moves a vertex {factor:.2} times as far as its parameters with @unit(m) add up to, so that it may be cut off or culled; let it move less, or declare a parameter for the rest",
+                "{} would move a vertex {factor:.2} times as far as its parameters with @unit(m) add up to, or its @reach says, and is held there; let it move less, or state more",
                 effect.name
             )
         }));

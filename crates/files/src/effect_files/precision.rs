@@ -354,12 +354,15 @@ pub fn overreaching<T>(
         let mut probe = Effect::clone(&effect);
         watches.push((effect, most.clone()));
         let (exact_moved, limit_m) = (hook.moved.clone(), hook.max_displacement_m.clone());
+        let unheld = hook.unheld.clone().unwrap_or_else(|| exact_moved.clone());
         let moved = move |vertices: &mut [Vertex], words: &[u32]| {
-            let given: Vec<DVec3> = vertices.iter().map(|v| v.offset).collect();
+            let given = vertices.to_vec();
+            let mut free = given.clone();
+            unheld(&mut free, words);
             exact_moved(vertices, words);
             let limit_m = limit_m(0.0, words);
-            for (v, given) in vertices.iter().zip(given) {
-                let factor = over_reach(v.offset.distance(given), limit_m);
+            for (v, given) in free.iter().zip(given) {
+                let factor = over_reach(v.offset.distance(given.offset), limit_m);
                 most.fetch_max(factor.to_bits(), Ordering::Relaxed);
             }
         };
@@ -384,22 +387,24 @@ fn probed_vertex(
     errors: Arc<Mutex<Errors>>,
 ) -> VertexHook {
     let exact_moved = exact.moved.clone();
+    let unheld = exact.unheld.clone().unwrap_or_else(|| exact_moved.clone());
     let moved = move |vertices: &mut [Vertex], words: &[u32]| {
         if is_cancelled(&errors) {
             return;
         }
         let given = vertices.to_vec();
-        let mut others = given.clone();
+        let (mut others, mut free) = (given.clone(), given.clone());
+        unheld(&mut free, words);
         exact_moved(vertices, words);
         (single.moved)(&mut others, words);
         let mut errors = locked(&errors);
         errors.has_run = true;
-        for ((result, other), given) in vertices.iter().zip(others).zip(given) {
+        for (((result, other), given), free) in vertices.iter().zip(others).zip(given).zip(free) {
             let error = (result.offset - other.offset).abs().max_element();
             let place = Place::World(result.position + result.offset);
             errors.record(Quantity::Vertex, error, place);
             if is_of_file {
-                let moved_m = result.offset.distance(given.offset);
+                let moved_m = free.offset.distance(given.offset);
                 let reach = over_reach(moved_m, (single.max_displacement_m)(0.0, words));
                 errors.record(Quantity::Reach, reach, place);
             }

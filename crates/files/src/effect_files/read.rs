@@ -248,12 +248,17 @@ fn read_anew(
             let name = EffectSource::unique(stem, &reach.name);
             Ok::<_, EffectError>((function(&name, Precision::Double)?, reach.takes_radius))
         });
-        hooks.vertex = Some(twin::vertex(
+        let mut hook = twin::vertex(
             function(name, Precision::Double)?,
             function(name, Precision::Single)?,
             needs_triangle,
             reach.transpose()?,
-        ));
+        );
+        if let Some(written) = &declaration.hooks.vertex {
+            let name = EffectSource::unique(stem, written);
+            hook.unheld = Some(twin::moving(function(&name, Precision::Double)?));
+        }
+        hooks.vertex = Some(hook);
     }
     if let Some(name) = &source.functions.sample {
         hooks.sample = Some(twin::sample(function(name, Precision::Double)?));

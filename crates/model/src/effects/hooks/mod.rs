@@ -22,7 +22,7 @@ pub use slot::{Layers, Shape, Slot};
 pub use surface::{
     Finish, Lighting, LitEffect, Surface, SurfaceEffect, SurfaceInput, Transmission,
 };
-pub use vertex::{ErrorBound, ROUNDING, Vertex, VertexHook};
+pub use vertex::{ErrorBound, ROUNDING, Vertex, VertexFunction, VertexHook};
 
 use std::sync::Arc;
 

@@ -74,4 +74,6 @@ pub struct VertexHook {
     pub moved: Arc<VertexFunction>,
     pub error_bound: Arc<VertexBoundFunction>,
     pub max_displacement_m: Arc<DisplacementFunction>,
+    /// What the text of a file does before it is held to its reach. None: nothing holds it.
+    pub unheld: Option<Arc<VertexFunction>>,
 }

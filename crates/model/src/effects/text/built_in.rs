@@ -89,6 +89,7 @@ fn hooks(effect: &Effect, declaration: &Declaration<'_>) -> Hooks {
             max_displacement_m: Arc::new(move |radius_m, words| {
                 (hook.max_displacement_m)(radius_m, words)
             }),
+            unheld: None,
         });
     }
     if let Some(name) = &functions.sample {
