@@ -404,7 +404,7 @@ fn pins_ui(ui: &mut Ui, state: &State) {
         (0, 1) | (1, 0) => words.clone(),
         // The hint says by whom.
         (file, own) if ui.ctx().content_rect().width() < NARROW => {
-            format!("{} options pinned", file + own)
+            format!("{} pinned", file + own)
         }
         (count, 0) => format!("{count} options pinned by the preset"),
         (0, count) => format!("{count} options pinned by you"),
