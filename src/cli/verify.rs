@@ -16,6 +16,7 @@ use super::{
 use crate::{
     accuracy::{Skinning, Transparency},
     effect_files::{self, Crossing, Unsound},
+    effects::Stack,
     frame::Frame,
     gpu::Capture,
     measure::{
@@ -233,16 +234,23 @@ pub fn check(
         });
         let name = option.map_or("exact", Visibility::name);
         let capture = backend.capture(&pinned, scene, false)?;
-        let (judged, overreaching) = effect_files::overreaching(&stack, |stack| {
-            effect_files::crossings(stack, |stack| {
-                if matches!(backend, Backend::Oracle) {
-                    // It compares nothing, so it draws for what watches the effects.
-                    drop(oracle::render(scene, &view, stack));
-                }
-                backend.judged(scene, &view, stack, &capture)
-            })
-        });
-        let (verdict, crossings) = judged.map_err(CliError::usage)?;
+        // Built-in effects are held by tests; those of files are watched while they are judged.
+        let is_watched = !judged_by_own_text(&preset).is_empty();
+        let judge = |stack: &Stack| {
+            if is_watched && matches!(backend, Backend::Oracle) {
+                // It compares nothing, so it draws for what watches.
+                oracle::render(scene, &view, stack)?;
+            }
+            backend.judged(scene, &view, stack, &capture)
+        };
+        let (verdict, crossings, overreaching) = if is_watched {
+            let (judged, overreaching) =
+                effect_files::overreaching(&stack, |stack| effect_files::crossings(stack, judge));
+            let (verdict, crossings) = judged.map_err(CliError::usage)?;
+            (verdict, crossings, overreaching)
+        } else {
+            (judge(&stack), Vec::new(), Vec::new())
+        };
         let verdict = verdict?;
         let pixels_over_tolerance = budget.pixels_over_tolerance(&verdict, &capture.frame);
         let mut failures = budget.faults(

@@ -43,7 +43,7 @@ export async function alive(preset, canvas, { trouble, touched = () => {}, isAlo
     // Until the browser takes the frame, the canvas can be read.
     canvas.dispatchEvent(new Event("shown"));
     const ms = performance.now() - began;
-    // At rest nobody waits for the next frame.
+    // A picture that stands still keeps its full resolution.
     if (before && ms > SLOW_MS && scale > 0.25 && restsAt !== Infinity) scale *= 0.7;
     before = ms;
   }

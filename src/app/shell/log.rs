@@ -94,7 +94,7 @@ impl Log {
 
     /// Logs a message. One that was logged before is counted and moves to the end.
     pub fn add(&mut self, level: Level, text: impl Into<String>) {
-        // A line for each message, whatever library wrote it.
+        // A library may write a message of several lines; the log has one line for each message.
         let text = with_own_paths(text.into());
         let lines = text.lines().map(str::trim).filter(|line| !line.is_empty());
         let text = lines.collect::<Vec<_>>().join(" · ");

@@ -70,8 +70,8 @@ impl Container {
              -framerate {denominator}/{numerator} -i pipe:0 -an -map_metadata -1 -fflags +bitexact -flags:v +bitexact"
         );
         // Rec. 709 is what players assume; without the filter ffmpeg would convert with the matrix
-        // of standard television. The frames are tagged, not the encoder: it takes its tags from the
-        // first frame, in some versions of ffmpeg whatever options say.
+        // of standard television. The frames are tagged and not the encoder, because newer
+        // versions of ffmpeg let an encoder take its tags from the first frame.
         let colors = "-vf scale=out_color_matrix=bt709:out_range=tv:flags=accurate_rnd+full_chroma_int,format=yuv420p,\
                       setparams=color_primaries=bt709:color_trc=bt709:colorspace=bt709:range=tv";
         let bytes = 4 * u64::from(width) * u64::from(height) * frames as u64;

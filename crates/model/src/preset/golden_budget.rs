@@ -73,7 +73,8 @@ impl GoldenTest {
         pixels_over_tolerance: u64,
         allows_any_band: bool,
     ) -> Vec<String> {
-        // Pixels hide what passes read or keep
+        // After image passes a picture may look right although a color that they read or keep is wrong.
+        // So only a preset that states a budget of pixels is forgiven a channel.
         let forgiven = self.max_pixels.max(self.max_wrong_triangles) > 0
             && pixels_over_tolerance <= u64::from(self.max_pixels);
         let max_color_delta = if forgiven { u8::MAX } else { self.max_channel };

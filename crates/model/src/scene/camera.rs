@@ -14,7 +14,7 @@ pub const FRAMED: f64 = 0.8;
 /// How much of the picture a framed model fills, at least of its width or of its height.
 pub const FILLED: f64 = 0.88;
 
-/// What is filled by that which is framed.
+/// The room in a picture that a framed model fills.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame {
     /// How much of this is filled.

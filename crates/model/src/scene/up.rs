@@ -67,9 +67,9 @@ impl UpAxis {
     /// The axis that is up in a file of meshes, which says nothing of it. `bounds` is its box,
     /// `names` are those of the file and its parts, and `usual` is the axis of the format.
     ///
-    /// A name decides that says `y-up` or `z-up`; then coordinates of a map, far away along two axes
-    /// and not along the third; then the plane through the origin on which the model stands, which
-    /// is no clue where it hardly rises above that. What is left is as usual.
+    /// The first of these that holds decides: a name says `y-up` or `z-up`; the box lies far away along
+    /// two axes and not along the third, as coordinates of a map do; the model stands on the plane
+    /// through the origin and rises above it by at least [`RISES`] of its size. Else it is `usual`.
     pub fn guessed<'a>(
         bounds: &Bounds,
         names: impl IntoIterator<Item = &'a str>,

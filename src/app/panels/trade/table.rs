@@ -119,7 +119,7 @@ fn row_ui(
     [0, 1, 2]
         .into_iter()
         .for_each(|i| cell(ui, point.ms.map(|ms| [ms.p50, ms.p5, ms.p95][i])));
-    // Of the picture as it is shown, whatever size a combination was drawn in.
+    // Pixels of the size that is shown, also for a combination that was drawn at another size.
     let rounded = point.error(Metric::Wrong);
     cell(ui, rounded.map(|ppm| (ppm * pixels * 1e-6).round()));
     metrics
