@@ -218,12 +218,7 @@ impl PrecisionProbe {
                 hooks.passes = Some(probed_passes(exact, single, errors.clone()));
             }
             if let (Some(exact), Some(single)) = (probes.vertex, single.vertex) {
-                hooks.vertex = Some(probed_vertex(
-                    exact,
-                    single,
-                    effect.is_of_file(),
-                    errors.clone(),
-                ));
+                hooks.vertex = Some(probed_vertex(exact, single, errors.clone()));
             }
             let sample = probes.sample.filter(|hook| !hook.has_setup);
             if let (Some(exact), Some(single)) = (sample, single.sample) {
@@ -327,13 +322,23 @@ fn probed_passes(exact: PassHook, single: PassHook, errors: Arc<Mutex<Errors>>) 
     }
 }
 
-/// How many times as far as `limit_m` a vertex moved; 0 where that is allowed.
-fn over_reach(moved_m: f64, limit_m: f64) -> f64 {
-    // Normals are as long as f32 makes them.
-    match moved_m > 1.0001 * limit_m {
-        true => moved_m / limit_m,
-        false => 0.0,
+/// How many times as far as it states the text behind `hook` moves each vertex before it is held; 0
+/// where that is allowed, or nothing is held.
+fn over_reaches(hook: &VertexHook, given: &[Vertex], words: &[u32]) -> Vec<f64> {
+    let mut moved = given.to_vec();
+    if let Some(unheld) = &hook.unheld {
+        unheld(&mut moved, words);
     }
+    let limit_m = (hook.max_displacement_m)(0.0, words);
+    let factor = |(moved, given): (Vertex, &Vertex)| {
+        let moved_m = moved.offset.distance(given.offset);
+        // Normals are as long as f32 makes them.
+        match moved_m > 1.0001 * limit_m {
+            true => moved_m / limit_m,
+            false => 0.0,
+        }
+    };
+    moved.into_iter().zip(given).map(factor).collect()
 }
 
 /// The effects of files in `stack` that move a vertex farther than they state while `draw` draws with
@@ -346,25 +351,20 @@ pub fn overreaching<T>(
     let mut watches = Vec::new();
     for enabled in &mut watched.0 {
         let effect = enabled.effect.clone();
-        let Some(hook) = effect.hooks.vertex.clone().filter(|_| effect.is_of_file()) else {
+        let is_held = |hook: &VertexHook| hook.unheld.is_some();
+        let Some(hook) = effect.hooks.vertex.clone().filter(is_held) else {
             continue;
         };
         // Floats that are not negative are in the order of their bits.
         let most = Arc::new(AtomicU64::new(0));
         let mut probe = Effect::clone(&effect);
         watches.push((effect, most.clone()));
-        let (exact_moved, limit_m) = (hook.moved.clone(), hook.max_displacement_m.clone());
-        let unheld = hook.unheld.clone().unwrap_or_else(|| exact_moved.clone());
+        let exact = hook.clone();
         let moved = move |vertices: &mut [Vertex], words: &[u32]| {
-            let given = vertices.to_vec();
-            let mut free = given.clone();
-            unheld(&mut free, words);
-            exact_moved(vertices, words);
-            let limit_m = limit_m(0.0, words);
-            for (v, given) in free.iter().zip(given) {
-                let factor = over_reach(v.offset.distance(given.offset), limit_m);
+            for factor in over_reaches(&exact, vertices, words) {
                 most.fetch_max(factor.to_bits(), Ordering::Relaxed);
             }
+            (exact.moved)(vertices, words);
         };
         probe.hooks.vertex = Some(VertexHook {
             moved: Arc::new(moved),
@@ -380,32 +380,23 @@ pub fn overreaching<T>(
     (drawn, watches.into_iter().filter_map(factor).collect())
 }
 
-fn probed_vertex(
-    exact: VertexHook,
-    single: VertexHook,
-    is_of_file: bool,
-    errors: Arc<Mutex<Errors>>,
-) -> VertexHook {
-    let exact_moved = exact.moved.clone();
-    let unheld = exact.unheld.clone().unwrap_or_else(|| exact_moved.clone());
+fn probed_vertex(exact: VertexHook, single: VertexHook, errors: Arc<Mutex<Errors>>) -> VertexHook {
+    let measured = exact.clone();
     let moved = move |vertices: &mut [Vertex], words: &[u32]| {
         if is_cancelled(&errors) {
             return;
         }
-        let given = vertices.to_vec();
-        let (mut others, mut free) = (given.clone(), given.clone());
-        unheld(&mut free, words);
-        exact_moved(vertices, words);
+        let mut others = vertices.to_vec();
+        let reaches = over_reaches(&measured, vertices, words);
+        (measured.moved)(vertices, words);
         (single.moved)(&mut others, words);
         let mut errors = locked(&errors);
         errors.has_run = true;
-        for (((result, other), given), free) in vertices.iter().zip(others).zip(given).zip(free) {
+        for ((result, other), reach) in vertices.iter().zip(others).zip(reaches) {
             let error = (result.offset - other.offset).abs().max_element();
             let place = Place::World(result.position + result.offset);
             errors.record(Quantity::Vertex, error, place);
-            if is_of_file {
-                let moved_m = free.offset.distance(given.offset);
-                let reach = over_reach(moved_m, (single.max_displacement_m)(0.0, words));
+            if measured.unheld.is_some() {
                 errors.record(Quantity::Reach, reach, place);
             }
         }
