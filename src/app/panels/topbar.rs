@@ -129,6 +129,8 @@ fn menus_ui(ui: &mut Ui, state: &State, commands: &Commands) {
             let height = ui.ctx().content_rect().height() - 64.0;
             egui::ScrollArea::vertical()
                 .max_height(height)
+                // A menu offers less height than the window has.
+                .min_scrolled_height(height)
                 .show(ui, |ui| {
                     for (index, actions) in groups.iter().enumerate() {
                         if index > 0 {
