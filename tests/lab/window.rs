@@ -231,11 +231,9 @@ impl Display {
             .expect("the text is asked for");
     }
 
-    /// Takes what has come for `other`: gives `offered` to who asks for the clipboard, and returns
-    /// the text that was asked for.
-    fn exchange(&self, other: Window, offered: &str) -> Option<String> {
+    /// Takes what has come for `other`: gives `offered` to who asks for the clipboard.
+    fn exchange(&self, other: Window, offered: &str) -> Option<Exchanged> {
         let utf8 = self.atom("UTF8_STRING");
-        let mut text = None;
         while let Some(event) = self.x.poll_for_event().expect("a connection") {
             match event {
                 Event::SelectionRequest(asked) => {
@@ -262,6 +260,9 @@ impl Display {
                         .send_event(false, asked.requestor, EventMask::NO_EVENT, notify)
                         .expect("a request");
                     self.x.flush().expect("a connection");
+                    if property != x11rb::NONE {
+                        return Some(Exchanged::Given);
+                    }
                 }
                 Event::SelectionNotify(came) if came.property != x11rb::NONE => {
                     let any = AtomEnum::ANY;
@@ -269,12 +270,12 @@ impl Display {
                         .x
                         .get_property(true, other, came.property, any, 0, 1 << 20);
                     let value = cookie.expect("a request").reply().expect("a text").value;
-                    text = String::from_utf8(value).ok();
+                    return String::from_utf8(value).ok().map(Exchanged::Taken);
                 }
                 _ => {}
             }
         }
-        text
+        None
     }
 
     /// What a window manager sends when its close button is pressed.
@@ -292,6 +293,12 @@ impl Display {
             .check()
             .expect("the event is sent");
     }
+}
+
+/// What became of the clipboard between two programs.
+enum Exchanged {
+    Given,
+    Taken(String),
 }
 
 /// The lab on `display`, at home in `home`.
@@ -435,9 +442,11 @@ fn presets_go_to_and_come_from_other_programs() {
                 display.ask_for_text(other);
                 asked = Instant::now();
             }
-            let line = display.exchange(other, "");
-            line.and_then(|line| preset_file::from_line(&line).ok())
-                .is_some_and(|copied| copied.preset.stack == preset(id).preset.stack)
+            let Some(Exchanged::Taken(line)) = display.exchange(other, &offered) else {
+                return false;
+            };
+            preset_file::from_line(&line)
+                .is_ok_and(|copied| copied.preset.stack == preset(id).preset.stack)
         });
     };
     copied(&mut lab, "the preset was copied", "facet-knot");
@@ -449,11 +458,9 @@ fn presets_go_to_and_come_from_other_programs() {
         .check()
         .expect("another program owns the clipboard");
     display.press(&[CONTROL, u32::from(b'v')]);
-    let until = Instant::now() + Duration::from_secs(3);
-    while Instant::now() < until {
-        display.exchange(other, &offered);
-        std::thread::sleep(Duration::from_millis(20));
-    }
+    wait_for("the lab asked for the clipboard", &mut lab, || {
+        matches!(display.exchange(other, &offered), Some(Exchanged::Given))
+    });
     copied(&mut lab, "the preset of another program was pasted", "toon");
 }
 

@@ -27,7 +27,7 @@ use crate::preset_file::{PLAIN, PresetFile};
 /// The bar at the top: menus, the open preset, the adapter, and the cost and error of the picture.
 pub struct TopBar;
 
-/// Below this width of the window the adapter is a dot, points.
+/// Below this width of the window the adapter is a dot and controls stand closer, points.
 const NARROW: f32 = 1080.0;
 
 /// Room for milliseconds and for a count of wrong pixels, points: a number that comes or changes
@@ -102,8 +102,10 @@ impl Panel for TopBar {
             }
             ui.add_space(theme::HALF);
             at_right(ui, |ui| {
-                ui.spacing_mut().item_spacing.x = 6.0;
-                adapter_ui(ui, state, ui.ctx().content_rect().width() < NARROW);
+                let is_narrow = is_narrow(ui);
+                // In a narrow window the name of the preset needs the room more.
+                ui.spacing_mut().item_spacing.x = if is_narrow { 4.0 } else { 6.0 };
+                adapter_ui(ui, state, is_narrow);
                 if !is_phone {
                     ui.separator();
                     anti_aliasing_ui(ui, state, commands);
@@ -116,6 +118,10 @@ impl Panel for TopBar {
             });
         });
     }
+}
+
+fn is_narrow(ui: &Ui) -> bool {
+    ui.ctx().content_rect().width() < NARROW
 }
 
 fn menus_ui(ui: &mut Ui, state: &State, commands: &Commands) {
@@ -319,7 +325,6 @@ fn adapter_ui(ui: &mut Ui, state: &State, is_narrow: bool) {
 
 /// Cost and error, always side by side.
 fn cost_ui(ui: &mut Ui, state: &State, commands: &Commands) {
-    ui.spacing_mut().item_spacing.x = 6.0;
     let (color, error, hint) = error_line(
         state.picture.verification.verdict(),
         state.picture.screen.requested(),
@@ -361,12 +366,7 @@ fn number_ui(ui: &mut Ui, width: f32, side: Align, text: RichText, hint: String)
         f32::INFINITY,
         font,
     );
-    // In a narrow window the name of the preset needs the room more.
-    let reserved = if ui.ctx().content_rect().width() < NARROW {
-        0.0
-    } else {
-        width
-    };
+    let reserved = if is_narrow(ui) { 0.0 } else { width };
     let width = reserved.max(galley.size().x);
     ui.allocate_ui_with_layout(vec2(width, theme::ROW), layout, |ui| {
         ui.set_min_width(width);
@@ -405,9 +405,7 @@ fn pins_ui(ui: &mut Ui, state: &State) {
         _ if words.is_empty() => return,
         (0, 1) | (1, 0) => words.clone(),
         // The hint says by whom.
-        (file, own) if ui.ctx().content_rect().width() < NARROW => {
-            format!("{} pinned", file + own)
-        }
+        (file, own) if is_narrow(ui) => format!("{} pinned", file + own),
         (count, 0) => format!("{count} options pinned by the preset"),
         (0, count) => format!("{count} options pinned by you"),
         (file, own) => format!("{} options pinned, {own} by you", file + own),
