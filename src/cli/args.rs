@@ -257,15 +257,13 @@ pub fn command() -> clap::Command {
         Cli::command().mut_arg("log", |log| log.help_heading("Options of the window"));
     command.build();
     command.mut_subcommands(|subcommand| {
-        match TAKES_LOOK.contains(&subcommand.get_name()) || !has_look(&subcommand) {
-            true => subcommand,
-            false => subcommand.mut_arg("preset", |preset| preset.hide(true)),
-        }
+        let refuses = !TAKES_LOOK.contains(&subcommand.get_name());
+        // In place: a built command knows its flags by their indices, which `mut_arg` would move.
+        subcommand.mut_args(|arg| match refuses && arg.get_id() == "preset" {
+            true => arg.hide(true),
+            false => arg,
+        })
     })
-}
-
-fn has_look(command: &clap::Command) -> bool {
-    command.get_arguments().any(|arg| arg.get_id() == "preset")
 }
 
 #[derive(Args, Debug)]

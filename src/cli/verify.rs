@@ -15,6 +15,7 @@ use super::{
 };
 use crate::{
     accuracy::{Skinning, Transparency},
+    effect_files::{self, Crossing, Unsound},
     frame::Frame,
     gpu::Capture,
     measure::{
@@ -52,10 +53,14 @@ pub struct Row {
     /// Pixels with a color channel over the preset's budget.
     pixels_over_tolerance: u64,
     frames: u32,
+    /// An effect of a file on the finished picture, where colors differ.
+    image_effect: Option<String>,
     /// What failed, one sentence each.
     pub failures: Vec<String>,
     /// What the preset allows to err without saying by how much: pinned options and the tier.
     pub without_budget: Vec<String>,
+    /// What each effect makes that is no color, and where, one sentence each.
+    unsound: Vec<String>,
     /// Volume with linear skinning, as a fraction of that with dual quaternions; none without
     /// skins.
     volume: Option<f64>,
@@ -122,6 +127,12 @@ fn tell_notes(preset_files: &[PresetFile], rows: &[Row], streams: &mut Streams) 
             ));
         }
     }
+    for (row, unsound) in rows
+        .iter()
+        .flat_map(|row| row.unsound.iter().map(move |u| (row, u)))
+    {
+        streams.note(&format!("{} with {}: {unsound}", row.preset, row.option));
+    }
     rows.iter().filter(|row| row.accuracy.race_pixels > 0).for_each(|row| {
         streams.note(&format!(
             "{} with {}: {} pixels show the wrong one of the triangles that cover them, because of the race",
@@ -164,7 +175,13 @@ fn tell_notes(preset_files: &[PresetFile], rows: &[Row], streams: &mut Streams) 
     rows.iter().for_each(|row| {
         row.failures.iter().for_each(|failure| {
             streams.note(&format!("{} with {}: {failure}", row.preset, row.option))
-        })
+        });
+        if let (false, Some(effect)) = (row.failures.is_empty(), &row.image_effect) {
+            streams.note(&format!(
+                "{} with {}: where the colors of {effect} lie on steps, and that is meant, let them: [test] max_pixels = {} and why; --output DIR shows which pixels differ",
+                row.preset, row.option, row.pixels_over_tolerance
+            ));
+        }
     });
 }
 
@@ -202,6 +219,11 @@ pub fn check(
         // Before anything is drawn.
         oracle::can_judge(scene, &view, &stack, preset.accuracy.scale().factor())?;
     }
+    let image_effect = preset.stack.0.iter().find_map(|enabled| {
+        let effect = &enabled.effect;
+        let is_image = effect.hooks.passes.is_some() || effect.hooks.image.is_some();
+        (effect.is_of_file() && is_image).then(|| effect.name.clone())
+    });
     let volume = volume_fraction(&preset, scene)?;
     let (mut rows, mut first): (Vec<Row>, Option<(&str, Frame)>) = (Vec::new(), None);
     for option in backend.options(&preset) {
@@ -211,7 +233,11 @@ pub fn check(
         });
         let name = option.map_or("exact", Visibility::name);
         let capture = backend.capture(&pinned, scene, false)?;
-        let verdict = backend.judged(scene, &view, &stack, &capture)?;
+        let (judged, overreaching) = effect_files::overreaching(&stack, |stack| {
+            effect_files::crossings(stack, |stack| backend.judged(scene, &view, stack, &capture))
+        });
+        let (verdict, crossings) = judged.map_err(CliError::usage)?;
+        let verdict = verdict?;
         let pixels_over_tolerance = budget.pixels_over_tolerance(&verdict, &capture.frame);
         let mut failures = budget.faults(
             &verdict.report,
@@ -229,6 +255,12 @@ pub fn check(
                 failures.push(format!("{off} of 255 off {most} nearest layers"));
             }
         }
+        failures.extend(overreaching.iter().map(|(effect, factor)| {
+            format!(
+                "{} moves a vertex {factor:.2} times as far as its parameters with @unit(m) add up to, so that it may be cut off or culled; let it move less, or declare a parameter for the rest",
+                effect.name
+            )
+        }));
         failures.extend(budget.count_faults(&capture.frame, capture.layers.as_deref()));
         if !budget.refused.is_empty() {
             failures.push(format!(
@@ -270,9 +302,11 @@ pub fn check(
                 .as_ref()
                 .map(|look| [look.id.clone(), preset_file.scene_name()]),
             judged_by_own_text: judged_by_own_text(&preset),
+            unsound: unsound(&crossings),
             option: name,
             accuracy: verdict.report,
             pixels_over_tolerance,
+            image_effect: image_effect.clone().filter(|_| pixels_over_tolerance > 0),
             frames: 1 + options.repeats,
             without_budget: if failures.is_empty() {
                 Vec::new()
@@ -424,4 +458,24 @@ fn json_row(row: &Row, backend: &Backend) -> Value {
     }
     object["rms_color_delta"] = number(row.accuracy.rms_color_delta);
     object
+}
+
+/// A sentence for each effect that makes what is not finite.
+fn unsound(crossings: &[Crossing]) -> Vec<String> {
+    let is_not_finite = |crossing: &&Crossing| crossing.made != Unsound::Negative;
+    let mut of_effects: Vec<(&Crossing, u64)> = Vec::new();
+    for crossing in crossings.iter().filter(is_not_finite) {
+        let known = of_effects
+            .iter_mut()
+            .find(|(first, _)| first.effect == crossing.effect);
+        match known {
+            Some((_, count)) => *count += 1,
+            None => of_effects.push((crossing, 1)),
+        }
+    }
+    let sentence = |(first, count): (&Crossing, u64)| {
+        let ([x, y], effect, made) = (first.pixel, &first.effect.name, first.made.word());
+        format!("{effect} makes {made} at {count} pixels, the first at {x}, {y}")
+    };
+    of_effects.into_iter().map(sentence).collect()
 }

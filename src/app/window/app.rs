@@ -47,6 +47,7 @@ use crate::{
         },
         widgets::{panel::is_phone, theme},
     },
+    effect_files::has_f32_error,
     gpu::device::AdapterChoice,
     host,
     preset_file::{self, Folders, PresetFile},
@@ -74,8 +75,10 @@ pub struct Options {
 
 /// Most seconds between two frames of the window while a preset plays.
 const PLAY_STEP_S: f32 = 1.0 / 30.0;
-/// Width of the text of an effect, points, and the least of it and of the picture beside it.
-const CODE_WIDTH: f32 = 440.0;
+/// Width of the text of an effect where there is room, points: 80 columns and line numbers. Then the
+/// width that it needs beside the presets, its least width, and that of the picture beside it.
+const CODE_WIDTH: f32 = 640.0;
+const CODE_BESIDE_PRESETS: f32 = 440.0;
 const LEAST_CODE: f32 = 260.0;
 const LEAST_PICTURE: f32 = 200.0;
 /// Least width of the picture for which the presets stay beside the text, points.
@@ -350,7 +353,7 @@ impl App {
         }
     }
 
-    /// Starts to measure the f32 errors of the user's effects when the picture is at rest. They are
+    /// Starts to measure the f32 errors of the effects when the picture is at rest. They are
     /// shown in the inspector alone.
     fn request_precision(&mut self, ctx: &egui::Context, is_held: bool) {
         let State {
@@ -383,7 +386,7 @@ impl App {
             .stack
             .0
             .iter()
-            .any(|enabled| enabled.effect.is_of_file());
+            .any(|enabled| has_f32_error(&enabled.effect));
         if !is_used || is_known || is_busy || !open.right || screen.drawn() != Some(requested) {
             return;
         }
@@ -463,7 +466,7 @@ impl App {
         let window = ui.ctx().content_rect().width();
         let [left_width, right_width] = self.state.settings.panel_widths(window);
         // Where there is no room for both, the text stands in place of the presets.
-        let beside = left_width + CODE_WIDTH + PICTURE_BESIDE_PRESETS + right_width;
+        let beside = left_width + CODE_BESIDE_PRESETS + PICTURE_BESIDE_PRESETS + right_width;
         if !self.panels.code.is_open() || beside <= window {
             let left = egui::Panel::left("left")
                 .frame(theme::panel_frame())
@@ -488,7 +491,7 @@ impl App {
             let widest = ui.available_width() - right_width - LEAST_PICTURE;
             egui::Panel::left("code")
                 .frame(theme::panel_frame())
-                .default_size(CODE_WIDTH)
+                .default_size(CODE_WIDTH.min((widest - LEAST_PICTURE).max(LEAST_CODE)))
                 .size_range(LEAST_CODE..=widest.max(LEAST_CODE))
                 .show(ui, |ui| self.panel_ui(ui, |panels| &mut panels.code));
         }

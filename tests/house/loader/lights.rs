@@ -40,7 +40,7 @@ fn placed(scene: &Scene, preset: &Preset) -> Vec<PlacedLight> {
 
 #[test]
 fn each_kind_arrives_with_its_color_intensity_range_and_cone() {
-    let scene = lit(r#"{"type":"directional"}, {"type":"point","name":"Lamp","color":[1,0.5,0],"intensity":40,"range":7},
+    let scene = lit(r#"{"type":"directional"}, {"type":"point","name":"Lamp","color":[1,0.5,0],"intensity":4,"range":7},
         {"type":"spot","intensity":2,"spot":{}}, {"type":"spot","spot":{"innerConeAngle":0.25,"outerConeAngle":0.5}}"#)
     .silent();
     let lights = scene.lights.iter();
@@ -50,7 +50,7 @@ fn each_kind_arrives_with_its_color_intensity_range_and_cone() {
     let cone = |inner, outer| LightKind::Spot { inner, outer };
     let wanted = [
         (LightKind::Directional, [1.0; 3], None, None),
-        (LightKind::Point, [40.0, 20.0, 0.0], Some(7.0), None),
+        (LightKind::Point, [4.0, 2.0, 0.0], Some(7.0), None),
         (cone(0.0, FRAC_PI_4), [2.0; 3], None, None),
         (cone(0.25, 0.5), [1.0; 3], None, None),
     ];

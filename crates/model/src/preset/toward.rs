@@ -203,11 +203,7 @@ impl Preset {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{
-        effects::{Effect, explode},
-        preset::LengthUnit,
-        scene::builtin,
-    };
+    use crate::{effects::Effect, preset::LengthUnit, scene::builtin};
 
     fn camera(eye: [f64; 3], fov_y_deg: f64) -> Camera {
         Camera {
@@ -305,9 +301,11 @@ mod tests {
             unit,
             ..Preset::default()
         });
-        let amount = explode::EFFECT.field("amount_m").expect("a parameter");
+        let amount = Effect::named("explode")
+            .field("amount_m")
+            .expect("a parameter");
         for (preset, value) in [(&mut a, 0.5), (&mut b, 4.0)] {
-            let enabled = preset.stack.enable(&explode::EFFECT);
+            let enabled = preset.stack.enable(Effect::named("explode"));
             amount.set(&mut enabled.words, &[value]).expect("in range");
         }
         let of = |preset: &Preset| {

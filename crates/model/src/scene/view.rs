@@ -70,7 +70,8 @@ pub struct SceneState {
 impl SceneState {
     /// Placement of what does not spin: walls.
     pub fn world_from_walls(&self) -> DMat4 {
-        DMat4::from_translation(-self.origin)
+        // Not the negative, which is -0 of 0.
+        DMat4::from_translation(DVec3::ZERO - self.origin)
     }
 
     /// Placement of particles, which spin with the scene and count from the same point as the world.

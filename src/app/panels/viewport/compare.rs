@@ -267,6 +267,7 @@ impl Compare {
             accuracy,
             scene: scene.clone(),
         }
+        .given(None)
     }
 
     /// Draws A at the size of B.

@@ -28,8 +28,9 @@ use crate::{
 /// Instructions of one call. The loops of an effect end long before.
 const MAX_STEPS: u64 = 100_000_000;
 /// Functions of the library that read more than their arguments: of `lib/image`,
-/// `lib/image_pass`, `lib/image_direction` and `lib/image_kept`, then of `lib/image_file`.
-pub const EXTERNALS: [&str; 18] = [
+/// `lib/image_pass`, `lib/image_direction`, `lib/image_kept` and `lib/panorama`, then of
+/// `lib/image_file`.
+pub const EXTERNALS: [&str; 21] = [
     "image_has",
     "image_at",
     "image_background",
@@ -46,14 +47,20 @@ pub const EXTERNALS: [&str; 18] = [
     "image_direction",
     "image_kept",
     "image_kept_at",
+    "panorama_irradiance",
+    "panorama_radiance",
+    "image_meters_apart",
     "image_file_size",
     "image_file_texel",
 ];
 /// Index of the first function of `lib/image_file`.
-const IMAGE_FILES: usize = 16;
+const IMAGE_FILES: usize = 19;
 /// How much the inputs of a color may be off on the f32 side, relative to the largest component of
-/// each.
-const INPUT_ERROR: f64 = 1.0 / (1 << 17) as f64;
+/// each: as a fraction of the step's offset.
+const INPUT_ERROR: f64 = 0.25;
+/// The farthest that a function behind `@reach` may let a vertex move; beyond that, and where it
+/// gives no number, nothing moves.
+pub const MOST_REACH_M: f64 = 1e12;
 /// Bytes of registers that a thread keeps, beside those of the program that it runs.
 const MAX_BYTES: usize = 16 << 20;
 
@@ -164,6 +171,38 @@ impl Function {
             each.filter(|(lane, _)| ended >> lane & 1 == 0)
                 .for_each(|(_, sample)| left(sample));
         });
+    }
+}
+
+impl Function {
+    /// What a function behind `@reach` says with these parameter words, meters; no less than 0.
+    fn reach_m(&self, takes_radius: bool, radius_m: f64, words: &[u32]) -> f64 {
+        // A function that returns its first argument leaves it where it is.
+        let first = match takes_radius {
+            true => radius_m,
+            false => f32::from_bits(words[0]).into(),
+        };
+        let mut reach = [(radius_m, first)];
+        self.run(
+            &mut reach,
+            words,
+            &mut NoHost,
+            |inputs| {
+                if takes_radius {
+                    inputs.floats(|(radius_m, _)| [*radius_m]);
+                }
+            },
+            |outputs| {
+                outputs.float(|(_, reach_m)| reach_m);
+            },
+            |_| {},
+        );
+        let [(_, reach_m)] = reach;
+        if (0.0..=MOST_REACH_M).contains(&reach_m) {
+            reach_m
+        } else {
+            0.0
+        }
     }
 }
 
@@ -283,11 +322,7 @@ pub(super) fn perturbed<const N: usize>(values: [f64; N], index: u32, strength: 
 
 /// How much inputs are moved to a side of a step.
 pub(super) fn strength(step_offset: f64) -> f64 {
-    if step_offset == 0.0 {
-        0.0
-    } else {
-        INPUT_ERROR * step_offset.signum()
-    }
+    INPUT_ERROR * step_offset
 }
 
 /// Hands samples to `run` that are evaluated alike: in f32, as `rounded`, to one side of a step, else
@@ -499,51 +534,72 @@ fn moved_within(v: &Vertex, bound: &ErrorBound, turn: u32) -> Vertex {
     }
 }
 
+/// A corner whose members are f32 values.
+fn rounded(v: &Vertex) -> Vertex {
+    Vertex {
+        position: v.position.as_vec3().as_dvec3(),
+        offset: v.offset.as_vec3().as_dvec3(),
+        normal: v.normal.as_vec3().as_dvec3(),
+        flat_normal: v.flat_normal.as_vec3().as_dvec3(),
+        center: v.center.as_vec3().as_dvec3(),
+        arm: v.arm.as_vec3().as_dvec3(),
+        center_screen: v.center_screen.as_vec2().as_dvec2(),
+        triangle: v.triangle,
+        cell_px: v.cell_px,
+    }
+}
+
 /// The vertex hook: `double` in f64, `single` with every operation rounded to f32.
-pub fn vertex(double: Function, single: Function, needs_triangle: bool) -> VertexHook {
+/// `reach` says how far it moves a vertex, else the sum of the lengths does.
+pub fn vertex(
+    double: Function,
+    single: Function,
+    needs_triangle: bool,
+    reach: Option<(Function, bool)>,
+) -> VertexHook {
     let (moving, fields) = (double.clone(), double.members.clone());
     let moved = move |vertices: &mut [Vertex], words: &[u32]| move_all(&moving, vertices, words);
-    let limit = move |_: f64, words: &[u32]| {
-        lengths(&fields)
+    let limit = move |radius_m: f64, words: &[u32]| match &reach {
+        Some((function, takes_radius)) => function.reach_m(*takes_radius, radius_m, words),
+        None => lengths(&fields)
             .map(|field| field.get(words)[0].abs())
-            .sum()
+            .sum(),
     };
     // The text is evaluated at inputs at the ends of their bounds and in f32. Twice the largest
     // difference is the bound.
     let error_bound = move |v: &Vertex, bound: ErrorBound, words: &[u32]| {
-        let rounded = Vertex {
-            position: v.position.as_vec3().as_dvec3(),
-            offset: v.offset.as_vec3().as_dvec3(),
-            normal: v.normal.as_vec3().as_dvec3(),
-            flat_normal: v.flat_normal.as_vec3().as_dvec3(),
-            center: v.center.as_vec3().as_dvec3(),
-            arm: v.arm.as_vec3().as_dvec3(),
-            center_screen: v.center_screen.as_vec2().as_dvec2(),
-            triangle: v.triangle,
-            cell_px: v.cell_px,
-        };
-        let mut exact: [Vertex; 7] = std::array::from_fn(|turn| match turn {
+        let given: [Vertex; 14] = std::array::from_fn(|turn| match turn {
             0 => *v,
-            _ => moved_within(v, &bound, turn as u32 - 1),
+            1..7 => moved_within(v, &bound, turn as u32 - 1),
+            7 => rounded(v),
+            _ => rounded(&moved_within(v, &bound, turn as u32 - 8)),
         });
-        move_all(&double, &mut exact, words);
-        let mut rounded = [rounded];
-        move_all(&single, &mut rounded, words);
-        let [exact, others @ ..] = exact;
-        let (mut offset_m, mut normal) = (0.0_f64, 0.0_f64);
-        for other in others.into_iter().chain(rounded) {
-            offset_m = offset_m.max((other.offset - exact.offset).abs().max_element());
-            normal = normal.max((other.normal - exact.normal).abs().max_element());
+        let mut all = given;
+        move_all(&double, &mut all[..7], words);
+        move_all(&single, &mut all[7..], words);
+        // What moves nothing adds nothing.
+        let is_still = |given: &Vertex, moved: &Vertex| {
+            given.offset == moved.offset && given.normal == moved.normal
+        };
+        if given
+            .iter()
+            .zip(&all)
+            .all(|(given, moved)| is_still(given, moved))
+        {
+            return bound;
         }
+        let [exact, others @ ..] = all;
+        let apart = others.map(|other| other.offset - exact.offset);
+        let normal = others
+            .map(|other| (other.normal - exact.normal).abs().max_element())
+            .into_iter()
+            .fold(0.0, f64::max);
         let scale = v.position.abs().max_element() + exact.offset.abs().max_element();
-        let (offset_m, normal) = (
-            2.0 * offset_m + 16.0 * ROUNDING * scale,
-            2.0 * normal + 16.0 * ROUNDING,
-        );
+        let (offset_m, along_m) = spread(&apart);
         ErrorBound {
-            offset_m,
-            along_m: DVec3::ZERO,
-            normal,
+            offset_m: 2.0 * offset_m + 16.0 * ROUNDING * scale,
+            along_m: 2.0 * along_m,
+            normal: 2.0 * normal + 16.0 * ROUNDING,
             ..bound
         }
     };
@@ -552,6 +608,20 @@ pub fn vertex(double: Function, single: Function, needs_triangle: bool) -> Verte
         moved: Arc::new(moved),
         error_bound: Arc::new(error_bound),
         max_displacement_m: Arc::new(limit),
+    }
+}
+
+/// How far these lie from the origin, and the part of that in one direction where nearly all of it
+/// is; no direction otherwise.
+fn spread(places: &[DVec3]) -> (f64, DVec3) {
+    let most = |of: &dyn Fn(&DVec3) -> f64| places.iter().map(of).fold(0.0, f64::max);
+    let longest = most(&|place| place.length());
+    let far = places.iter().find(|place| place.length() == longest);
+    let direction = far.map_or(DVec3::ZERO, |far| far.normalize_or_zero());
+    let aside = most(&|place| place.reject_from_normalized(direction).length());
+    match 16.0 * aside < longest {
+        true => (longest + aside, direction * longest),
+        false => (most(&|place| place.abs().max_element()), DVec3::ZERO),
     }
 }
 
