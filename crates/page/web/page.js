@@ -34,7 +34,6 @@ function trouble(error) {
   if (isEmbed) caption.append(" · ", link("rasterlab", "./"));
   if (opened || isAgain || !find("stage")) return;
   // What was asked for is not there: home and the gallery lead on.
-  oracle.remove();
   find("door").href = "window.html";
   find("name").textContent = "Nothing to show here";
   find("about").replaceChildren("Go ", link("home", "./"), ", or choose from the gallery.");
@@ -165,7 +164,6 @@ async function withoutDevice([why, todo]) {
   kind.add("still");
   say(why, "wrong", todo);
   const { preset } = await begun();
-  oracle.remove();
   say(why, "wrong", todo);
   await showOracle(preset, undefined, (part) => (detail.textContent = `${todo} The oracle draws: ${Math.round(100 * part)} %`));
   const notes = preset.notes();

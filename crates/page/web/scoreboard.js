@@ -31,10 +31,10 @@ background = [0.02, 0.025, 0.04, 1.0]
 
 const WAYS = [
   { name: "Exact", about: "Edges in integers, the nearest triangle by atomics: what rasterlab draws", pins: { visibility: "split32" } },
-  { name: "Race", about: "Depth loaded, compared and stored without atomics: what many software rasterizers ship", pins: { visibility: "race" } },
+  { name: "Race", about: "Depth loaded, compared and stored without atomics: what many software rasterizers ship", pins: { visibility: "race" }, right: "None here: this device draws so few triangles at once that no store came too late" },
   { name: "16-bit depth", about: "Evenly spaced depths in 16 bits, as in shadow maps and old engines", pins: { visibility: "split32", depth: "ndc16" } },
-  { name: "Float edges", about: "Edge functions in 32-bit floats with the top-left rule", pins: { visibility: "split32", coverage: "float-top-left" } },
-  { name: "Hardware", about: "This device's own rasterizer, which rounds corners and depths in its own way", hardware: true },
+  { name: "Float edges", about: "Edge functions in 32-bit floats with the top-left rule", pins: { visibility: "split32", coverage: "float-top-left" }, right: "None here: no pixel of this picture lies so near an edge that 32 bits do not tell its side" },
+  { name: "Hardware", about: "This device's own rasterizer, which rounds corners and depths in its own way", hardware: true, right: "None here: this device rounds as the oracle does, in this picture" },
 ];
 
 const element = (tag, name, text = "") => Object.assign(document.createElement(tag), { className: name, textContent: text });
@@ -130,12 +130,13 @@ async function withoutDevice(main, [why, todo]) {
   const [grid, status, strip] = [element("div", "ways"), element("p", "wrong", why), element("nav", "", "")];
   strip.id = "strip";
   const sight = card({ name: "The oracle's picture", about: "Worked out on your processor: what the five ways would be held against." }, grid);
+  [sight.number.textContent, sight.unit.textContent, sight.times.textContent] = ["", "", "The oracle draws …"];
   main.replaceChildren(head("Five ways to find the triangle of each pixel, drawn on your device and held against an exact oracle."), status, element("p", "lead", todo), grid, strip);
   presets().then((list) => strip.append(...stills(list, "").children));
   const progress = (part) => (sight.times.textContent = `The oracle draws: ${Math.round(100 * part)} %`);
   const oracles = await oraclePicture(sight.preset, { progress });
   show(sight, oracles, oracles);
-  [sight.times.textContent, sight.number.textContent, sight.unit.textContent, sight.own.dataset.state] = ["", "", "", ""];
+  [sight.times.textContent, sight.number.textContent, sight.unit.textContent] = ["Every pixel is exact", "", ""];
 }
 
 /** Shows the scoreboard for good, and returns when its first moment is measured. `why` says that there is no device. */

@@ -51,8 +51,7 @@ async function named() {
     } else if (!open && preset) {
       const gallery = await presets();
       if (gallery.length && !gallery.some(([id]) => id === preset)) {
-        const like = (await similar(preset)).map(([id, name]) => `${id} (${name})`).join(", ");
-        throw new Error(`The gallery has no preset "${preset}"${like ? `; there are ${like}` : ""}. The presets at the left are all`);
+        throw Object.assign(new Error(`The gallery has no preset "${preset}"`), { like: preset });
       }
       open = preset;
     }
@@ -60,6 +59,19 @@ async function named() {
     return { files, why: error instanceof URIError ? CUT : error };
   }
   return { open, model, files };
+}
+
+/** Says over the open window what the address names and is not there, and what is like it. */
+async function tellAbsent({ message, like }) {
+  const [note, close] = [document.createElement("div"), document.createElement("button")];
+  note.className = "note";
+  close.textContent = "Close";
+  close.onclick = () => note.remove();
+  const found = like ? await similar(like) : [];
+  const ways = [...found.map(([id, name]) => [`${name} (${id})`, `window.html?preset=${id}`]), ["home", "./"]];
+  const links = ways.flatMap(([textContent, href]) => [" · ", Object.assign(document.createElement("a"), { textContent, href })]);
+  note.append(`${message}. The presets of the gallery are at the left`, ...links, " ", close);
+  document.body.append(note);
 }
 
 /** The title, and the address of what is shown: `id` names a preset of the gallery as it is there. */
@@ -75,8 +87,9 @@ async function main() {
   const why = await whyNoDevice();
   if (why) {
     const page = Object.assign(document.createElement("a"), { href: `./${location.search}${location.hash}`, textContent: "See the oracle's picture of it" });
-    caption.replaceChildren(`${why.join(" ")} `, page, stills((await presets()).slice(0, 12), "gallery"));
-    return;
+    const note = caption.cloneNode();
+    note.append(`${why.join(" ")} `, page, stills((await presets()).slice(0, 12), "gallery"));
+    return caption.replaceWith(note);
   }
   await init();
   const { open, model, files, why: not } = await named();
@@ -89,9 +102,9 @@ async function main() {
     // A line that cannot be read is refused before the window opens.
     if (!open?.startsWith("rasterlab1:") || globalThis.rasterlabPanic) throw error;
     await open_window(canvas, undefined, undefined);
-    refuse(/cut off/.test(error) ? CUT.message : words(error));
+    tellAbsent(/cut off/.test(error) ? CUT : { message: words(error) });
   }
-  if (not) refuse(words(not));
+  if (not) tellAbsent({ message: words(not), like: not.like });
   caption.hidden = true;
 }
 
