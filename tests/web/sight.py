@@ -33,7 +33,9 @@ PATIENCE_S = 120
 BARE = "--headless --no-sandbox --no-first-run --disable-background-networking --disable-component-update --disable-sync".split()
 # Names that are not localhost are no secure addresses.
 INSECURE = ["--host-resolver-rules=MAP insecure.test 127.0.0.1"]
-BROWSERS = {"device": run.FLAGS + INSECURE, "no adapter": [*BARE, "--disable-gpu"], "no WebGPU": [*BARE, "--disable-gpu", "--disable-blink-features=WebGPU"]}
+BROWSERS = {"device": run.FLAGS + INSECURE, "no adapter": [*BARE, "--disable-gpu"], "no WebGPU": [*BARE, "--disable-gpu"]}
+# Chromium has WebGPU everywhere.
+SCRIPTS = {"no WebGPU": "delete Navigator.prototype.gpu"}
 TERMINAL = re.compile(r"--adapter|mesa|Vulkan driver|/given/|rasterlab [a-z]+ [A-Z-]|not compiled")
 # A page has come to rest with a verdict, a trouble, or the oracle's picture.
 VERDICT = r"agree|oracle's picture, drawn|differ"
@@ -110,7 +112,7 @@ SEEN = """(async () => {
 class Browser:
     """Chromium with one page, steered by messages through its pipe, each ended by a zero byte."""
 
-    def __init__(self, flags, profile):
+    def __init__(self, flags, profile, script=None):
         (mine_in, its_out), (its_in, mine_out) = os.pipe(), os.pipe()
         # Above those that it expects, 3 and 4.
         its_in, its_out = (fcntl.fcntl(end, fcntl.F_DUPFD, 10) for end in (its_in, its_out))
@@ -123,11 +125,14 @@ class Browser:
             [run_chromium(), *flags, "--remote-debugging-pipe", f"--user-data-dir={profile}", "about:blank"],
             preexec_fn=place, pass_fds=(3, 4), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         self.input, self.output, self.rest, self.asked, self.failed = mine_out, mine_in, b"", 0, []
+        self.thrown = []
         self.session = None
         target = next(info for info in self.ask("Target.getTargets")["targetInfos"] if info["type"] == "page")
         self.session = self.ask("Target.attachToTarget", targetId=target["targetId"], flatten=True)["sessionId"]
         for domain in ("Page", "Network", "Runtime"):
             self.ask(f"{domain}.enable")
+        if script:
+            self.ask("Page.addScriptToEvaluateOnNewDocument", source=script)
 
     def ask(self, method, **parameters):
         self.asked += 1
@@ -154,6 +159,9 @@ class Browser:
         message = json.loads(text)
         if message.get("method") == "Network.responseReceived" and message["params"]["response"]["status"] >= 400:
             self.failed.append(message["params"]["response"]["url"])
+        if message.get("method") == "Runtime.exceptionThrown":
+            details = message["params"]["exceptionDetails"]
+            self.thrown.append(details.get("exception", {}).get("description") or details["text"])
         if message.get("method") == "Network.loadingFailed" and not message["params"].get("canceled"):
             self.failed.append(message["params"]["errorText"])
         yield message
@@ -170,6 +178,7 @@ class Browser:
         self.ask("Page.navigate", url="about:blank")
         self.ask("Page.navigate", url=address)
         self.failed.clear()
+        self.thrown.clear()
 
     def wait(self, expression, what):
         end = time.monotonic() + PATIENCE_S
@@ -230,6 +239,7 @@ def faults_of(browser, kind, name, words, size):
         ("changed" in name and seen["greens"], "something is green"),
         ("cut link" in name and seen["saves"], "it offers something to save"),
         ([one for one in browser.failed if not is_meant(one, name)], f"requests fail: {browser.failed}"),
+        (browser.thrown, f"it throws {browser.thrown}"),
     ]
     if name == "front":
         told += [(end > size[1], f"{what} ends at {end:.0f}") for what, end in seen["ends"]]
@@ -256,7 +266,7 @@ def main():
         if not sights:
             continue
         with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
-            browser = Browser(flags, profile)
+            browser = Browser(flags, profile, SCRIPTS.get(kind))
             try:
                 if not names:
                     browser.open(f"{site}test.html?only=nothing", SIZES["desktop"])
