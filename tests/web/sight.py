@@ -74,11 +74,11 @@ SIGHTS = [
     ("scoreboard", "device", "?scoreboard", r"Counted at 0°|It turns"),
     ("window", "device", "window.html?preset=facet", None),
     ("insecure", "device", "http://insecure.test:{port}/", r"not secure.*needs https.*oracle's picture, drawn"),
-    ("insecure scoreboard", "device", "http://insecure.test:{port}/?scoreboard", r"needs https.*The oracle's picture"),
+    ("insecure scoreboard", "device", "http://insecure.test:{port}/?scoreboard", r"needs https.*Every pixel is exact"),
     ("no adapter", "no adapter", "", r"has WebGPU, but finds no graphics device.*oracle's picture, drawn"),
     ("link without adapter", "no adapter", "#{link}", r"finds no graphics device.*oracle's picture, drawn"),
     ("model without adapter", "no adapter", "?model=models/three.gltf", r"finds no graphics device.*oracle's picture, drawn"),
-    ("scoreboard without adapter", "no adapter", "?scoreboard", r"finds no graphics device.*The oracle's picture"),
+    ("scoreboard without adapter", "no adapter", "?scoreboard", r"finds no graphics device.*Every pixel is exact"),
     ("embed without adapter", "no adapter", "?embed&preset=facet", r"finds no graphics device.*oracle's picture, drawn"),
     ("window without adapter", "no adapter", "window.html?preset=facet", r"finds no graphics device.*See the oracle's picture"),
     ("no WebGPU", "no WebGPU", "", r"has no WebGPU.*oracle's picture, drawn"),
@@ -93,9 +93,11 @@ LINK = """(async () => {
 # What is said, how far things have jumped, what sticks out, which pictures of the gallery are empty, and where what matters ends.
 SEEN = """(async () => {
   const shifts = await new Promise((resolve) => {
-    let sum = 0;
-    new PerformanceObserver((list) => list.getEntries().forEach((entry) => (sum += entry.value))).observe({ type: "layout-shift", buffered: true });
-    setTimeout(() => resolve(sum), 200);
+    let [sum, moved] = [0, []];
+    const name = ({ node }) => node?.id || node?.className || node?.nodeName;
+    const take = (entry) => ([sum, moved] = [sum + entry.value, [...moved, `${entry.sources.map(name)} by ${entry.value.toFixed(3)}`]]);
+    new PerformanceObserver((list) => list.getEntries().forEach(take)).observe({ type: "layout-shift", buffered: true });
+    setTimeout(() => resolve([sum, moved.join("; ")]), 200);
   });
   const wide = document.documentElement.scrollWidth - innerWidth;
   const broken = [...document.images].filter((image) => image.complete && image.src && !image.naturalWidth).map(({ src }) => src);
@@ -232,7 +234,7 @@ def faults_of(browser, kind, name, words, size):
     seen = browser.value(SEEN)
     told = [
         (TERMINAL.search(said), f"it says {TERMINAL.search(said)}"),
-        (seen["shifts"] > (0.02 if kind == "device" and not is_absent(name) else 0.1), f"it jumps by {seen['shifts']:.3f}"),
+        (seen["shifts"][0] > (0.02 if kind == "device" and not is_absent(name) else 0.1), f"it jumps: {seen['shifts'][1]}"),
         (seen["wide"] > 0, f"it is {seen['wide']} pixels too wide"),
         (seen["broken"], f"empty pictures: {seen['broken']}"),
         (not seen["title"] or not seen["icon"] or not seen["description"], "it lacks a title, an icon or a description"),

@@ -59,7 +59,16 @@ function allowed(code) {
   });
 }
 
-const saysLoss = () => say("The device was lost; another one is opened …");
+const LOSS = "The device was lost; another one is opened …";
+const saysLoss = () => say(LOSS);
+
+/** Says that the device was lost, until the picture is there again. */
+function saysLossOnce() {
+  const before = [caption.textContent, caption.className, detail.textContent];
+  if (before[0] === LOSS) return;
+  saysLoss();
+  canvas.addEventListener("shown", () => caption.textContent === LOSS && say(...before), { once: true });
+}
 
 /** The oracle's picture of a preset as large as it is shown, over the picture on the device. */
 async function showOracle(preset, signal, progress) {
@@ -176,7 +185,7 @@ async function picture() {
   say("The kernels are compiled …");
   const shown = preset.copy();
   let turned = () => {};
-  await alive(shown, canvas, { trouble, touched: () => turned(), isAlone: isEmbed });
+  await alive(shown, canvas, { trouble, touched: () => turned(), lost: saysLossOnce, isAlone: isEmbed });
   still.hidden = true;
   if (isEmbed) return parent.postMessage("rasterlab shows a picture", "*");
   turned = offerOracle(shown);
