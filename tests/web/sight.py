@@ -229,7 +229,8 @@ def faults_of(browser, kind, name, words, size):
     if "window" in name and kind == "device":
         browser.wait('document.getElementById("caption")?.hidden', "the window does not open")
     elif not words:
-        browser.wait('document.querySelector("#still")?.hidden', "no picture comes")
+        # A canvas that nothing has drawn on is 300 wide.
+        browser.wait('document.querySelector("#still")?.hidden && document.querySelector("#picture").width !== 300', "no picture comes")
     time.sleep(2)
     seen = browser.value(SEEN)
     told = [
