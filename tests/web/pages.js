@@ -150,7 +150,7 @@ export async function embed() {
     }, "the picture turns");
     await shows(() => canvas.dispatchEvent(new window.WheelEvent("wheel", { deltaY: -100, bubbles: true, cancelable: true })), "it comes closer");
     const play = find("#play");
-    await shows(() => window.dispatchEvent(new window.KeyboardEvent("keydown", { key: " ", bubbles: true, cancelable: true })), "it plays");
+    await shows(() => frame.contentDocument.body.dispatchEvent(new window.KeyboardEvent("keydown", { key: " ", bubbles: true, cancelable: true })), "it plays");
     await until(() => new Set(shown).size > 2, "it shows one frame after another");
     const names = play.getAttribute("aria-label");
     play.click();

@@ -33,7 +33,9 @@ PATIENCE_S = 120
 BARE = "--headless --no-sandbox --no-first-run --disable-background-networking --disable-component-update --disable-sync".split()
 # Names that are not localhost are no secure addresses.
 INSECURE = ["--host-resolver-rules=MAP insecure.test 127.0.0.1"]
-BROWSERS = {"device": run.FLAGS + INSECURE, "no adapter": [*BARE, "--disable-gpu"], "no WebGPU": [*BARE, "--disable-gpu", "--disable-blink-features=WebGPU"]}
+BROWSERS = {"device": run.FLAGS + INSECURE, "no adapter": [*BARE, "--disable-gpu"], "no WebGPU": [*BARE, "--disable-gpu"]}
+# Chromium has WebGPU everywhere.
+SCRIPTS = {"no WebGPU": "delete Navigator.prototype.gpu"}
 TERMINAL = re.compile(r"--adapter|mesa|Vulkan driver|/given/|rasterlab [a-z]+ [A-Z-]|not compiled")
 # A page has come to rest with a verdict, a trouble, or the oracle's picture.
 VERDICT = r"agree|oracle's picture, drawn|differ"
@@ -72,11 +74,11 @@ SIGHTS = [
     ("scoreboard", "device", "?scoreboard", r"Counted at 0°|It turns"),
     ("window", "device", "window.html?preset=facet", None),
     ("insecure", "device", "http://insecure.test:{port}/", r"not secure.*needs https.*oracle's picture, drawn"),
-    ("insecure scoreboard", "device", "http://insecure.test:{port}/?scoreboard", r"needs https.*The oracle's picture"),
+    ("insecure scoreboard", "device", "http://insecure.test:{port}/?scoreboard", r"needs https.*Every pixel is exact"),
     ("no adapter", "no adapter", "", r"has WebGPU, but finds no graphics device.*oracle's picture, drawn"),
     ("link without adapter", "no adapter", "#{link}", r"finds no graphics device.*oracle's picture, drawn"),
     ("model without adapter", "no adapter", "?model=models/three.gltf", r"finds no graphics device.*oracle's picture, drawn"),
-    ("scoreboard without adapter", "no adapter", "?scoreboard", r"finds no graphics device.*The oracle's picture"),
+    ("scoreboard without adapter", "no adapter", "?scoreboard", r"finds no graphics device.*Every pixel is exact"),
     ("embed without adapter", "no adapter", "?embed&preset=facet", r"finds no graphics device.*oracle's picture, drawn"),
     ("window without adapter", "no adapter", "window.html?preset=facet", r"finds no graphics device.*See the oracle's picture"),
     ("no WebGPU", "no WebGPU", "", r"has no WebGPU.*oracle's picture, drawn"),
@@ -91,9 +93,11 @@ LINK = """(async () => {
 # What is said, how far things have jumped, what sticks out, which pictures of the gallery are empty, and where what matters ends.
 SEEN = """(async () => {
   const shifts = await new Promise((resolve) => {
-    let sum = 0;
-    new PerformanceObserver((list) => list.getEntries().forEach((entry) => (sum += entry.value))).observe({ type: "layout-shift", buffered: true });
-    setTimeout(() => resolve(sum), 200);
+    let [sum, moved] = [0, []];
+    const name = ({ node }) => node?.id || node?.className || node?.nodeName;
+    const take = (entry) => ([sum, moved] = [sum + entry.value, [...moved, `${entry.sources.map(name)} by ${entry.value.toFixed(3)}`]]);
+    new PerformanceObserver((list) => list.getEntries().forEach(take)).observe({ type: "layout-shift", buffered: true });
+    setTimeout(() => resolve([sum, moved.join("; ")]), 200);
   });
   const wide = document.documentElement.scrollWidth - innerWidth;
   const broken = [...document.images].filter((image) => image.complete && image.src && !image.naturalWidth).map(({ src }) => src);
@@ -110,7 +114,7 @@ SEEN = """(async () => {
 class Browser:
     """Chromium with one page, steered by messages through its pipe, each ended by a zero byte."""
 
-    def __init__(self, flags, profile):
+    def __init__(self, flags, profile, script=None):
         (mine_in, its_out), (its_in, mine_out) = os.pipe(), os.pipe()
         # Above those that it expects, 3 and 4.
         its_in, its_out = (fcntl.fcntl(end, fcntl.F_DUPFD, 10) for end in (its_in, its_out))
@@ -123,11 +127,14 @@ class Browser:
             [run_chromium(), *flags, "--remote-debugging-pipe", f"--user-data-dir={profile}", "about:blank"],
             preexec_fn=place, pass_fds=(3, 4), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         self.input, self.output, self.rest, self.asked, self.failed = mine_out, mine_in, b"", 0, []
+        self.thrown = []
         self.session = None
         target = next(info for info in self.ask("Target.getTargets")["targetInfos"] if info["type"] == "page")
         self.session = self.ask("Target.attachToTarget", targetId=target["targetId"], flatten=True)["sessionId"]
         for domain in ("Page", "Network", "Runtime"):
             self.ask(f"{domain}.enable")
+        if script:
+            self.ask("Page.addScriptToEvaluateOnNewDocument", source=script)
 
     def ask(self, method, **parameters):
         self.asked += 1
@@ -154,6 +161,9 @@ class Browser:
         message = json.loads(text)
         if message.get("method") == "Network.responseReceived" and message["params"]["response"]["status"] >= 400:
             self.failed.append(message["params"]["response"]["url"])
+        if message.get("method") == "Runtime.exceptionThrown":
+            details = message["params"]["exceptionDetails"]
+            self.thrown.append(details.get("exception", {}).get("description") or details["text"])
         if message.get("method") == "Network.loadingFailed" and not message["params"].get("canceled"):
             self.failed.append(message["params"]["errorText"])
         yield message
@@ -170,6 +180,7 @@ class Browser:
         self.ask("Page.navigate", url="about:blank")
         self.ask("Page.navigate", url=address)
         self.failed.clear()
+        self.thrown.clear()
 
     def wait(self, expression, what):
         end = time.monotonic() + PATIENCE_S
@@ -218,18 +229,20 @@ def faults_of(browser, kind, name, words, size):
     if "window" in name and kind == "device":
         browser.wait('document.getElementById("caption")?.hidden', "the window does not open")
     elif not words:
-        browser.wait('document.querySelector("#still")?.hidden', "no picture comes")
+        # A canvas that nothing has drawn on is 300 wide.
+        browser.wait('document.querySelector("#still")?.hidden && document.querySelector("#picture").width !== 300', "no picture comes")
     time.sleep(2)
     seen = browser.value(SEEN)
     told = [
         (TERMINAL.search(said), f"it says {TERMINAL.search(said)}"),
-        (seen["shifts"] > (0.02 if kind == "device" and not is_absent(name) else 0.1), f"it jumps by {seen['shifts']:.3f}"),
+        (seen["shifts"][0] > (0.02 if kind == "device" and not is_absent(name) else 0.1), f"it jumps: {seen['shifts'][1]}"),
         (seen["wide"] > 0, f"it is {seen['wide']} pixels too wide"),
         (seen["broken"], f"empty pictures: {seen['broken']}"),
         (not seen["title"] or not seen["icon"] or not seen["description"], "it lacks a title, an icon or a description"),
         ("changed" in name and seen["greens"], "something is green"),
         ("cut link" in name and seen["saves"], "it offers something to save"),
         ([one for one in browser.failed if not is_meant(one, name)], f"requests fail: {browser.failed}"),
+        (browser.thrown, f"it throws {browser.thrown}"),
     ]
     if name == "front":
         told += [(end > size[1], f"{what} ends at {end:.0f}") for what, end in seen["ends"]]
@@ -256,7 +269,7 @@ def main():
         if not sights:
             continue
         with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
-            browser = Browser(flags, profile)
+            browser = Browser(flags, profile, SCRIPTS.get(kind))
             try:
                 if not names:
                     browser.open(f"{site}test.html?only=nothing", SIZES["desktop"])

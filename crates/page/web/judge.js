@@ -2,7 +2,7 @@
 //
 //   { ask: "verdict", text, id }           the preset drawn on a device and judged: { faults, allowed }
 //   { ask: "rows", text, id, begin, end }  those rows of the oracle's picture: { colors }, RGBA
-//   { ask: "bits", text, id }              the hashes of the oracle's triangle ids and depth keys: { bits }
+//   { ask: "bits", text, id }              the hashes of triangle ids and depth keys in portable bits, of a device and of the oracle: { mine, oracles }
 //
 // The first question brings the files of a model, if there are any: { files }, [path, bytes] each.
 import init, { OpenPreset, Page, give_file, oracle_bits, oracle_rows } from "./rasterlab_page.js";
@@ -14,7 +14,11 @@ const answers = {
     return { faults, allowed };
   },
   rows: (preset, { begin, end }) => ({ colors: oracle_rows(preset, begin, end) }),
-  bits: (preset) => ({ bits: oracle_bits(preset.in_portable_bits()) }),
+  bits: async (preset) => {
+    const portable = preset.in_portable_bits();
+    const mine = (await (await Page.open()).draw(portable)).hashes();
+    return { mine, oracles: oracle_bits(portable) };
+  },
 };
 
 let preset;

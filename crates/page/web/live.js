@@ -11,8 +11,8 @@ const REST_MS = 400;
 const KEY_DEG = 6;
 
 /** Shows `preset` on `canvas` for good, and returns when its first frame is there. `trouble` is told what fails later, `touched` when
- * another picture begins. In a page that scrolls (`isAlone` is false) the wheel is the picture's while that has the focus. */
-export async function alive(preset, canvas, { trouble, touched = () => {}, isAlone = true }) {
+ * another picture begins, `lost` when the device was lost and another one is opened. In a page that scrolls (`isAlone` is false) the wheel is the picture's while that has the focus. */
+export async function alive(preset, canvas, { trouble, touched = () => {}, lost = () => {}, isAlone = true }) {
   let [page, live] = [];
   const [width, height] = preset.size();
   let size = [];
@@ -39,7 +39,7 @@ export async function alive(preset, canvas, { trouble, touched = () => {}, isAlo
   async function frame() {
     isWanted = false;
     const began = performance.now();
-    await again(draw);
+    await again(draw, lost);
     // Until the browser takes the frame, the canvas can be read.
     canvas.dispatchEvent(new Event("shown"));
     const ms = performance.now() - began;

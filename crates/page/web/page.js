@@ -18,14 +18,14 @@ let opened;
 const grouped = (number) => number.toLocaleString("en-US");
 const link = (text, href) => Object.assign(document.createElement("a"), { textContent: text, href, target: isEmbed ? "_blank" : "" });
 
-/** The line below the picture, and a smaller one. */
+/** The line below the picture, and a smaller one: until something goes wrong for good. */
 function say(text, name = "", more = "") {
-  [caption.textContent, caption.className, detail.textContent] = [text, name, more];
+  if (!kind.contains("trouble")) [caption.textContent, caption.className, detail.textContent] = [text, name, more];
 }
 
 function trouble(error) {
   const isAgain = kind.contains("trouble");
-  say(words(error), "wrong");
+  [caption.textContent, caption.className, detail.textContent] = [words(error), "wrong", ""];
   // The scoreboard has taken its place.
   if (!caption.isConnected) main.append(caption);
   kind.add("trouble");
@@ -59,7 +59,16 @@ function allowed(code) {
   });
 }
 
-const saysLoss = () => say("The device was lost; another one is opened …");
+const LOSS = "The device was lost; another one is opened …";
+const saysLoss = () => say(LOSS);
+
+/** Says that the device was lost, until the picture is there again. */
+function saysLossOnce() {
+  const before = [caption.textContent, caption.className, detail.textContent];
+  if (before[0] === LOSS) return;
+  saysLoss();
+  canvas.addEventListener("shown", () => caption.textContent === LOSS && say(...before), { once: true });
+}
 
 /** The oracle's picture of a preset as large as it is shown, over the picture on the device. */
 async function showOracle(preset, signal, progress) {
@@ -102,15 +111,15 @@ function offerOracle(shown) {
   };
 }
 
-/** What the oracle says about the link's bits and those of this device, as arguments of `say`; the device draws them in portable bits. */
-async function provenBits(preset, text, id, bits, adapter) {
-  const mine = (await again(async () => (await device()).draw(preset.in_portable_bits()), saysLoss)).hashes();
-  const { bits: oracles } = await asked({ ask: "bits", text, id });
+/** What the oracle says about the link's bits and those of this device, as arguments of `say`. */
+async function provenBits(text, id, bits, adapter) {
+  const { mine, oracles } = await again(() => asked({ ask: "bits", text, id }), saysLoss);
   const differ = (a, b) => ["triangles", "depths"].filter((_, i) => a[i] !== b[i]).join(" and ");
   const [own, linked] = [differ(mine, oracles), differ(oracles, bits)];
   if (linked) return [`This link was changed, or made by another version: its ${linked} are not the oracle's`, "wrong"];
   if (own) return [`${adapter} draws it wrong: its ${own} are not the oracle's`, "wrong"];
-  return ["This link, your device and the oracle agree, bit for bit", "right", `triangles ${mine[0]}, depths ${mine[1]}`];
+  detail.title = `triangles ${mine[0]}, depths ${mine[1]}`;
+  return ["This link, your device and the oracle agree, bit for bit", "right"];
 }
 
 /** What the oracle says about the picture of this device, as arguments of `say`. */
@@ -128,7 +137,7 @@ async function judge(preset, { text, id, bits }) {
   const adapter = await adapterName(await device());
   let verdict;
   try {
-    verdict = bits && (await provenBits(preset, text, id, bits, adapter));
+    verdict = bits && (await provenBits(text, id, bits, adapter));
   } catch (error) {
     verdict = [`The bits of this link cannot be compared: ${words(error)}`, "wrong"];
   }
@@ -152,7 +161,7 @@ async function begun() {
   opened = preset.text();
   if (!kind.contains("front")) {
     document.title = `${preset.name()} · rasterlab`;
-    [find("name").textContent, find("about").textContent] = [preset.name(), preset.about()];
+    [find("name").textContent, find("about").textContent] = [preset.name(), preset.about() || (address.model ? "A model from an address, in the plain look" : "")];
   }
   const code = preset.brought_code();
   if (code) await allowed(code);
@@ -176,7 +185,7 @@ async function picture() {
   say("The kernels are compiled …");
   const shown = preset.copy();
   let turned = () => {};
-  await alive(shown, canvas, { trouble, touched: () => turned(), isAlone: isEmbed });
+  await alive(shown, canvas, { trouble, touched: () => turned(), lost: saysLossOnce, isAlone: isEmbed });
   still.hidden = true;
   if (isEmbed) return parent.postMessage("rasterlab shows a picture", "*");
   turned = offerOracle(shown);

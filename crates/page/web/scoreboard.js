@@ -1,9 +1,10 @@
 // The scoreboard: ways to rasterize, side by side on the visitor's device, each with its wrong pixels as the oracle counts them.
-import { Live, OpenPreset } from "./rasterlab_page.js";
+import { Live, OpenPreset, give_file } from "./rasterlab_page.js";
 import { again, device } from "./device.js";
 import { presets, stills } from "./gallery.js";
+import { paper } from "./paper.js";
 import { adapterName, isLoss, words } from "./trouble.js";
-import { oraclePicture } from "./workers.js";
+import { give, oraclePicture } from "./workers.js";
 
 const SIZE = [400, 300];
 /** A channel may be so far from the oracle's, of 255: more is another surface, no rounding. */
@@ -11,19 +12,21 @@ const TOLERANCE = 2;
 const HELD_S = 4;
 const DEG_PER_S = 9;
 
+const MODEL = "/given/paper.obj";
 const SCENE = `schema = 2
 name = "Scoreboard"
 [scene]
-builtin = "town?houses=40"
+path = "${MODEL}"
+up = "y"
 [camera]
-eye = [8.0, 7.6, 23.0]
-target = [0.0, 2.3, 0.0]
-fov_y_deg = 27.0
+eye = [0.0, 3.2, 7.4]
+target = [0.0, 1.45, 0.0]
+fov_y_deg = 32.0
 [effects.lambert]
-sun = [1.0, 0.78, 0.52, 1.0]
-sky = [0.16, 0.22, 0.36, 1.0]
-ground = [0.10, 0.07, 0.05, 1.0]
-sun_direction = [-0.9, 0.5, 0.45]
+sun = [0.9, 0.85, 0.78, 1.0]
+sky = [0.42, 0.47, 0.56, 1.0]
+ground = [0.3, 0.26, 0.26, 1.0]
+sun_direction = [-0.35, 0.75, 0.55]
 [output]
 size = [${SIZE}]
 background = [0.02, 0.025, 0.04, 1.0]
@@ -32,7 +35,7 @@ background = [0.02, 0.025, 0.04, 1.0]
 const WAYS = [
   { name: "Exact", about: "Edges in integers, the nearest triangle by atomics: what rasterlab draws", pins: { visibility: "split32" } },
   { name: "Race", about: "Depth loaded, compared and stored without atomics: what many software rasterizers ship", pins: { visibility: "race" }, right: "None here: this device draws so few triangles at once that no store came too late" },
-  { name: "16-bit depth", about: "Evenly spaced depths in 16 bits, as in shadow maps and old engines", pins: { visibility: "split32", depth: "ndc16" } },
+  { name: "16-bit depth", about: "Evenly spaced depths in 16 bits, as in shadow maps and old engines", pins: { visibility: "split32", depth: "ndc16" }, right: "None here: from this side no two surfaces lie so near each other" },
   { name: "Float edges", about: "Edge functions in 32-bit floats with the top-left rule", pins: { visibility: "split32", coverage: "float-top-left" }, right: "None here: no pixel of this picture lies so near an edge that 32 bits do not tell its side" },
   { name: "Hardware", about: "This device's own rasterizer, which rounds corners and depths in its own way", hardware: true, right: "None here: this device rounds as the oracle does, in this picture" },
 ];
@@ -53,6 +56,13 @@ function compared(colors, oracles) {
     if (isOwned && !isDrawn) holes.push(at / 4);
   }
   return { wrong, holes };
+}
+
+/** Gives the model of the scene to the module, here and in workers. */
+function giveScene() {
+  const file = [MODEL, new TextEncoder().encode(paper())];
+  give_file(...file);
+  give([file]);
 }
 
 /** A way with its card in the table and its preset. */
@@ -127,11 +137,13 @@ function head(lead) {
 
 /** Without a device: why, what to do, and the picture of the oracle, which needs none. */
 async function withoutDevice(main, [why, todo]) {
-  const [grid, status, strip] = [element("div", "ways"), element("p", "wrong", why), element("nav", "", "")];
+  const [grid, strip] = [element("div", "ways alone"), element("nav", "", "")];
   strip.id = "strip";
+  const top = head("Five ways to find the triangle of each pixel, drawn on your device and held against an exact oracle.");
+  top.append(element("p", "lead wrong", why), element("p", "", todo));
   const sight = card({ name: "The oracle's picture", about: "Worked out on your processor: what the five ways would be held against." }, grid);
   [sight.number.textContent, sight.unit.textContent, sight.times.textContent] = ["", "", "The oracle draws …"];
-  main.replaceChildren(head("Five ways to find the triangle of each pixel, drawn on your device and held against an exact oracle."), status, element("p", "lead", todo), grid, strip);
+  main.replaceChildren(top, grid, strip);
   presets().then((list) => strip.append(...stills(list, "").children));
   const progress = (part) => (sight.times.textContent = `The oracle draws: ${Math.round(100 * part)} %`);
   const oracles = await oraclePicture(sight.preset, { progress });
@@ -142,6 +154,7 @@ async function withoutDevice(main, [why, todo]) {
 /** Shows the scoreboard for good, and returns when its first moment is measured. `why` says that there is no device. */
 export async function scoreboard(main, why) {
   document.title = "Who draws the right pixel? · rasterlab";
+  giveScene();
   if (why) return withoutDevice(main, why);
   const adapter = await adapterName(await device());
   const [grid, status] = [element("div", "ways"), element("p", "status", "The oracle draws …")];
@@ -150,7 +163,7 @@ export async function scoreboard(main, why) {
   copy.disabled = here.disabled = true;
   const foot = element("footer", "");
   foot.append(status, here, copy);
-  main.replaceChildren(head(`One scene on ${adapter}, five ways to find the triangle of each pixel. An exact oracle on your processor draws it too, and every pixel that differs is red.`), grid, foot);
+  main.replaceChildren(head(`One scene, made to be hard, on ${adapter}, and five ways to find the triangle of each pixel. An exact oracle on your processor draws it too, and every pixel that differs is red.`), grid, foot);
   const ways = WAYS.map((way) => card(way, grid));
   let [angle, isWanted] = [0, true];
   here.onclick = () => (isWanted = true);

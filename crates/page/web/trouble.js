@@ -3,11 +3,11 @@
 /** Why nothing can be drawn on a device, and what to do about it, in one sentence each; nothing if it can. */
 export async function whyNoDevice() {
   if (!navigator.gpu && !isSecureContext) {
-    return ["This address is not secure, and browsers draw with WebGPU on secure ones alone: it needs https.", location.protocol === "http:" ? `Open https://${location.host}${location.pathname} if the site has it, or run the page on localhost.` : "Open the page over https."];
+    return ["This address is not secure: WebGPU needs https.", location.protocol === "http:" ? `Open https://${location.host}${location.pathname} if the site has it, or run the page on localhost.` : "Open the page over https."];
   }
   if (!navigator.gpu) return ["This browser has no WebGPU.", "Chrome and Edge have it since version 113, Safari since 26, Firefox since 141 on Windows and 145 on macOS."];
   if (await navigator.gpu.requestAdapter().catch(() => null)) return undefined;
-  return ["This browser has WebGPU, but finds no graphics device for it.", "Turn on graphics acceleration in its settings, update the graphics driver, or try another browser; in Chrome the page chrome://gpu says what is off."];
+  return ["This browser has WebGPU, but finds no graphics device for it.", "Turn on graphics acceleration in its settings, update the graphics driver, or try another browser; chrome://gpu says what is off."];
 }
 
 /** A page goes on with another device where that was lost, but not for the third time within so long. */

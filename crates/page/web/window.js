@@ -70,7 +70,7 @@ async function tellAbsent({ message, like }) {
   const found = like ? await similar(like) : [];
   const ways = [...found.map(([id, name]) => [`${name} (${id})`, `window.html?preset=${id}`]), ["home", "./"]];
   const links = ways.flatMap(([textContent, href]) => [" · ", Object.assign(document.createElement("a"), { textContent, href })]);
-  note.append(`${message}. The presets of the gallery are at the left`, ...links, " ", close);
+  note.append(`${message}. The gallery is under Presets`, ...links, " ", close);
   document.body.append(note);
 }
 
