@@ -90,7 +90,7 @@ fn an_effect_is_added_with_its_file_and_its_preset() {
     let file = shaders.path().join("effects/plasma.wgsl");
     fs::write(&file, PLASMA).expect("one effect more");
     place.play(&format!(
-        "$ bless plasma --shaders {folder} --presets presets
+        "$ bless plasma --shaders {folder}
         > plasma: new && its preset is created, too
         + presets/plasma.toml
         $ list effects --shaders {folder}
@@ -99,7 +99,7 @@ fn an_effect_is_added_with_its_file_and_its_preset() {
         $ render presets/plasma.toml CPU24x18 --shaders {folder} --set plasma.scale=8 -o b.png
         !~ a.png b.png
         $ check presets/plasma.toml --shaders {folder}
-        $2 check presets/plasma.toml"
+        $2 check --strict presets/plasma.toml"
     ));
     let child = Command::new(std::env::current_exe().expect("this test"))
         .args([

@@ -102,19 +102,19 @@ fn an_effect_with_the_clock_is_exported_and_judged_at_the_time_of_each_frame() {
     };
     let keys = "[animation.plasma]\nscale = [{ time_s = 0.0, value = 1.0 }, { time_s = 1.0, value = 3.0 }]\n";
     place.put("move.toml", preset("1.0", keys));
-    place.put("scaled.toml", preset("1.75", ""));
-    place.put("still.toml", preset("1.75", "").replace("1.5", "0.0"));
+    place.put("scaled.toml", preset("2.0", ""));
+    place.put("still.toml", preset("2.0", "").replace("1.5", "0.0"));
     place.play(
         "$ SEQUENCE
         ! 8 frames drawn, 0 kept
         $ render move.toml --time 0.375 -o alone.png CPU
         =~ f_003.png alone.png
-        # The keyframes alone, and the clock alone.
-        $ render scaled.toml --time 0.375 -o scaled.png CPU
-        =~ f_003.png scaled.png
+        # Half way between the keyframes; the clock alone, and without it.
+        $ render scaled.toml --time 0.5 -o scaled.png CPU
+        =~ f_004.png scaled.png
         $ render scaled.toml --time 0.75 -o later.png CPU
         !~ later.png scaled.png
-        $ render still.toml --time 0.375 -o still.png CPU
+        $ render still.toml --time 0.5 -o still.png CPU
         !~ still.png scaled.png
         $ verify f_003.png CPU --json
         /results/0/judged_by_own_text/0 \"plasma\"",
