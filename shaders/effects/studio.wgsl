@@ -1,4 +1,9 @@
 // Studio: metals, plastics and glazes under a sun and what surrounds them.
+//
+// A surface reflects as glTF 2.0 says: microfacets distributed after Trowbridge and Reitz (GGX), masked and shadowed after Smith
+// with heights correlated (Heitz 2014), with Schlick's Fresnel. Light that meets several facets leaves matt, in the color of that
+// many reflections (Kulla and Conty 2017), and what is not reflected enters a matt body, so that white stays white. The fractions
+// of light that this takes are rational functions fitted to the integral over all directions, within 0.013 of it.
 //@ use lib/surface
 //@ use lib/angle
 //@ use lib/environment
@@ -37,6 +42,7 @@ fn studio(surface: Surface, p: Studio) -> Surface {
     let arrives = 1.0 - p.sun_direction.w * (1.0 - s.lit);
     let from_sun = p.sun.rgb * arrives * studio_from_sun(m, seen, s.normal, s.view, toward);
 
+    // The rougher a surface, the nearer to its normal is what it mirrors (Lagarde 2014).
     let mirrored = s.normal * (2.0 * dot(s.normal, s.view)) - s.view;
     let spread = mirrored + (s.normal - mirrored) * (m.alpha * m.alpha);
     let turn = direction_degrees(p.turn_deg);
@@ -59,7 +65,8 @@ fn studio_material(s: Surface, p: Studio) -> StudioReflector {
         base * (1.0 - metallic), mix(s.finish.specular.rgb, base, metallic), mix(s.finish.specular.a, 1.0, metallic), rough * rough);
 }
 
-// Smallest perceptual roughness, and smallest cosine between a normal and the eye.
+// Smallest perceptual roughness: a sun without width is not seen in a smoother surface. Smallest cosine between a normal and the eye,
+// from which interpolated normals may face away.
 const STUDIO_SMOOTHEST = 0.08;
 const STUDIO_GRAZING = 0.001;
 
@@ -108,7 +115,8 @@ fn studio_fifth(x: f32) -> f32 {
     return squared * squared * x;
 }
 
-// Light that leaves towards the eye, of light from one direction.
+// Light that leaves towards the eye, of light from one direction that gives a white matt surface its own strength: π times the BRDF,
+// times the cosine.
 fn studio_from_sun(m: StudioReflector, seen: StudioAlbedo, normal: vec3f, view: vec3f, toward: vec3f) -> vec3f {
     let facing = dot(normal, toward);
     if facing <= 0.0 { return vec3f(0.0); }
@@ -139,7 +147,7 @@ fn studio_under_lights(surface: Surface, p: Studio) -> Surface {
     let m = studio_material(surface, p);
     let seen = studio_albedo(m, max(dot(surface.normal, surface.view), STUDIO_GRAZING));
     var sum = vec3f(0.0);
-    for (var i = 0u; i < PUNCTUAL_LIGHTS; i += 1u) {
+    for (var i = 0u; i < punctual_count(); i += 1u) {
         let arriving = punctual_arriving(i, surface.position);
         sum += arriving.light * studio_from_sun(m, seen, surface.normal, surface.view, arriving.toward);
     }

@@ -1,4 +1,6 @@
-// Environments: what surrounds a scene, as formulas. Mirrors `effects::hooks::environment`, which explains them.
+// Environments: a sky, a ground and three lamps, which are spherical Gaussians. The light on a matt surface is the sum of their
+// spherical harmonics up to the second band (Ramamoorthi and Hanrahan 2001); a rough mirror shows them blurred by lobes fitted to
+// that of GGX about the normal.
 
 // Numbers of environments; any other is the studio.
 const ENVIRONMENT_OVERCAST = 1u;
@@ -53,7 +55,7 @@ fn environment_turned(d: vec3f, turn: vec2f) -> vec3f {
     return vec3f(turn.x * d.x - turn.y * d.z, d.y, turn.y * d.x + turn.x * d.z);
 }
 
-// Concentration of a lobe with this mean cosine.
+// Concentration of a lobe with this mean cosine (Banerjee and others 2005).
 fn environment_concentration(mean: f32) -> f32 {
     return mean * (3.0 - mean * mean) / (1.0 - mean * mean);
 }
@@ -77,12 +79,15 @@ fn environment_lamp_irradiance(lamp: EnvironmentLamp, normal: vec3f) -> vec3f {
 
 // What a mirror of this roughness shows in a direction.
 fn environment_radiance(sky: Environment, d: vec3f, alpha: f32) -> vec3f {
+    // How far below 1 the mean cosine lies of what GGX mirrors about the normal; fitted within 0.004, and a third at 1.
     let blur = alpha * alpha / (0.1272 + alpha * (0.8497 + 2.0231 * alpha));
     let mean = 1.0 - blur;
+    // The horizon is soft, so that f32 shows it alike.
     let width = sqrt(0.0016 + 3.0 * blur);
     let y = d.y * mean;
     let t = clamp((y + width) / (2.0 * width), 0.0, 1.0);
     let upper = t * t * (3.0 - 2.0 * t);
+    // The integral of that: how high the visible sky is.
     let above = 2.0 * width * t * t * t * (1.0 - 0.5 * t) + max(y - width, 0.0);
     var sum = sky.ground * (1.0 - upper) + sky.horizon * (upper - above) + sky.zenith * above;
     sum += environment_lamp_radiance(sky.lamps[0], d, alpha);
@@ -92,6 +97,7 @@ fn environment_radiance(sky: Environment, d: vec3f, alpha: f32) -> vec3f {
 }
 
 fn environment_lamp_radiance(lamp: EnvironmentLamp, d: vec3f, alpha: f32) -> vec3f {
+    // A smooth mirror blurs it by a lobe as bright in its middle as that of GGX, fitted within 2 %; a matt one is as any matt surface.
     let squared = alpha * alpha;
     let spread = 2.0 * squared / (1.0 + alpha * (0.6749 + 2.3251 * alpha));
     let narrow = environment_concentration(lamp.mean);

@@ -14,6 +14,10 @@ struct PunctualLight {
 // How many there are.
 override PUNCTUAL_LIGHTS: u32 = 1u;
 
+fn punctual_count() -> u32 {
+    return PUNCTUAL_LIGHTS;
+}
+
 // Square of the nearest distance that makes a light stronger, meters.
 const PUNCTUAL_NEAREST = 0.0001;
 

@@ -47,7 +47,10 @@ pub use args::{Cli, Command};
 pub use error::{CliError, Exit};
 use streams::Streams;
 
-use crate::{gpu::device_memory::choose_device_memory, host, oracle, preset_file::PresetError};
+use crate::{
+    effect_files::check_added, gpu::device_memory::choose_device_memory, host, oracle,
+    preset_file::PresetError,
+};
 
 /// Runs the command.
 ///
@@ -65,7 +68,9 @@ pub fn run(cli: &Cli) -> Result<Exit, CliError> {
             folder.display()
         )));
     }
-    host::shaders::choose(cli.common.shaders.clone());
+    if host::shaders::choose(cli.common.shaders.clone()).is_some() {
+        check_added().map_err(CliError::usage)?;
+    }
     cli.common
         .memory_budget()
         .map_err(CliError::usage)?

@@ -5,6 +5,7 @@ use glam::{DMat4, DVec2, DVec3, DVec4};
 use rasterlab::{
     effects::{
         Effect, EnabledEffect, Surface,
+        glass::Glass,
         hooks::{Image, ImageAt, Lens, PassInput, Picture, Pixel, Signs},
     },
     scene::{Bounds, camera::Camera, view::View},
@@ -52,42 +53,62 @@ const PLAIN: Picture<'static> = Picture {
 
 /// What the only pass of an effect makes of the pixel in the middle of three by three.
 fn passed(effect: &EnabledEffect, colors: [DVec3; 9]) -> DVec3 {
-    let image = Image {
-        size: [3, 3],
-        colors: colors.map(|color| color.extend(1.0)).to_vec(),
-    };
+    passed_at(effect, 0, &colors, &[DVec3::ZERO; 9], [1, 1])
+}
+
+/// What pass `index` of an effect makes of a pixel of a square picture with these `colors`, after a
+/// pass that has written `last`.
+fn passed_at(
+    effect: &EnabledEffect,
+    index: usize,
+    colors: &[DVec3],
+    last: &[DVec3],
+    [x, y]: [i64; 2],
+) -> DVec3 {
+    let side = colors.len().isqrt() as u32;
+    let [image, last] = [colors, last].map(|colors| Image {
+        size: [side; 2],
+        colors: colors.iter().map(|color| color.extend(1.0)).collect(),
+    });
     let picture = Picture {
-        width: 3,
-        height: 3,
-        triangle_ids: &[0; 9],
-        keys: &[1; 9],
-        background: &[[0; 4]; 3],
+        width: side,
+        height: side,
+        triangle_ids: &vec![0; colors.len()],
+        keys: &vec![1; colors.len()],
+        background: &vec![[0; 4]; side as usize],
         ..PLAIN
     };
     let bounds = Bounds {
         min: DVec3::NEG_ONE,
         max: DVec3::ONE,
     };
-    let view = View::new(&Camera::default(), 3, 3, &bounds, DMat4::IDENTITY, [0.0; 4]);
+    let view = View::new(
+        &Camera::default(),
+        side,
+        side,
+        &bounds,
+        DMat4::IDENTITY,
+        [0.0; 4],
+    );
     let input = PassInput {
         picture: &picture,
         lens: Lens::of(&view),
         source: &image,
-        last: &image,
+        last: &last,
         kept: None,
         signs: Signs::None,
         panorama: None,
     };
     let at = ImageAt {
-        x: 1,
-        y: 1,
-        size: [3, 3],
+        x,
+        y,
+        size: [side; 2],
         scale: 1,
         step_offset: 0.0,
         input: &input,
     };
     let hook = effect.effect.hooks.passes.as_ref();
-    (hook.expect("it has passes").run)(0, &[at], &effect.words)[0].truncate()
+    (hook.expect("it has passes").run)(index, &[at], &effect.words)[0].truncate()
 }
 
 fn near(what: &str, given: impl Into<DVec3>, expected: [f64; 3], within: f64) {
@@ -245,6 +266,70 @@ fn the_nearest_ink_is_nearest_by_luma() {
     ] {
         let linear = encoded.map(|v: f64| ((v + 0.055) / 1.055).powf(2.4));
         near("ink", passed(&palette, [linear.into(); 9]), ink, 1e-6);
+    }
+}
+
+/// Kyprianidis, Kang and Döllner 2009, with the polynomial weights of Kyprianidis and others 2010:
+/// sector by sector from angles, the ellipse from the eigenvalues of the structure tensor.
+#[test]
+fn a_stroke_of_paint_is_an_anisotropic_kuwahara_filter() {
+    const SIDE: usize = 7;
+    let colors: [DVec3; SIDE * SIDE] = std::array::from_fn(|i| {
+        let (x, y) = (i % SIDE, i / SIDE);
+        let tone = |k: usize| ((7 * x + 13 * y + 5 * k + x * y) % 11) as f64 / 10.0;
+        let tones = DVec3::new(tone(0), 0.2 + 0.6 * tone(1), 0.5 * tone(2));
+        tones * tones
+    });
+    for ([radius, stretch, hardness, saturation], tensor, at, expected) in [
+        (
+            [2.5, 0.0, 1000.0, 1.0],
+            DVec3::ZERO,
+            [3, 3],
+            [0.265_925_32, 0.242_530_64, 0.059_317_62],
+        ),
+        (
+            [2.0, 1.5, 50.0, 1.0],
+            DVec3::new(0.02, 0.03, 0.5),
+            [3, 3],
+            [0.076_133_32, 0.390_433_34, 0.019_560_50],
+        ),
+        (
+            [1.8, 1.2, 300.0, 1.2],
+            DVec3::new(0.4, -0.2, 0.1),
+            [2, 4],
+            [0.175_278_42, 0.384_586_11, 0.012_321_91],
+        ),
+    ] {
+        let paint = enabled(
+            "paint",
+            &[
+                ("radius_px", &[radius]),
+                ("stretch", &[stretch]),
+                ("hardness", &[hardness]),
+                ("saturation", &[saturation]),
+            ],
+        );
+        let stroke = passed_at(&paint, 3, &colors, &[tensor; SIDE * SIDE], at);
+        near("stroke", stroke, expected, 1e-6);
+    }
+}
+
+/// Schlick 1994, of glass whose face-on reflectance is 0.04: what a black pane mirrors of white.
+#[test]
+fn glass_mirrors_as_schlick_says() {
+    for (degrees, mirrored) in [(0.0, 0.04), (60.0, 0.07), (75.0, 0.254_729_9), (90.0, 1.0)] {
+        let angle = f64::to_radians(degrees);
+        let slanted = Surface {
+            normal: DVec3::new(libm::sin(angle), 0.0, libm::cos(angle)),
+            ..Surface::example(DVec3::ZERO, 0)
+        };
+        let pane = Glass {
+            mirrored: [1.0; 4],
+            frost: 0.0,
+            ..Glass::default()
+        };
+        let light = pane.layer(&slanted).added;
+        near("glass", light, [mirrored; 3], 1e-6);
     }
 }
 

@@ -63,7 +63,7 @@ fn keys() -> Vec<KernelKey> {
         one(&rasterlab::effects::overdraw::EFFECT),
         one(&rasterlab::effects::xray::EFFECT),
         one(Effect::named("bloom")),
-        one(&rasterlab::effects::studio::EFFECT),
+        one(Effect::named("studio")),
         whole(Visibility::Packed32, &[]),
     ]
 }

@@ -17,6 +17,7 @@ mod mutation_campaign;
 mod mutations;
 mod plans;
 mod presets;
+mod reflection;
 mod registry;
 #[path = "../common/rounds.rs"]
 mod rounds;

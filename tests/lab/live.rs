@@ -490,12 +490,14 @@ fn a_dropped_effect_is_enabled_and_a_model_that_changes_is_loaded_again() {
 #[ignore = "run by shaders_of_a_folder_are_reloaded"]
 fn child_whose_shaders_change() {
     draw_pictures();
-    let file = std::path::PathBuf::from(
-        std::env::var_os("RASTERLAB_SHADERS").expect("the parent's folder"),
-    )
-    .join("effects/lambert.wgsl");
+    let folder = rasterlab::host::shaders::choose(None).expect("the parent's folder");
+    let file = folder.join("effects/lambert.wgsl");
     let text = std::fs::read_to_string(&file).expect("a shader");
     let mut lab = lab("lambert").expect("the parent has an adapter");
+    // An effect that the folder has more is in the list of effects.
+    click(&mut lab, Role::Button, "Effects");
+    assert!(lab.query_by_label("Effect plasma").is_some());
+    click(&mut lab, Role::Button, "Presets");
     write(
         &file,
         &text.replace(
@@ -530,6 +532,11 @@ fn shaders_of_a_folder_are_reloaded() {
         return;
     }
     let copied = own_shaders();
+    std::fs::copy(
+        "tests/picture/ported/plasma.wgsl",
+        copied.folder().join("effects/plasma.wgsl"),
+    )
+    .expect("one effect more");
     let child = std::process::Command::new(std::env::current_exe().expect("this test"))
         .args(["--exact", "live::child_whose_shaders_change", "--ignored"])
         .env("RASTERLAB_SHADERS", copied.folder())

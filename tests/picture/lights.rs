@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use glam::{DMat4, DVec3, DVec4};
 use rasterlab::{
-    effects::{Stack, hooks::Surface, studio},
+    effects::{Stack, hooks::Surface},
     oracle,
     scene::{
         Scene,
@@ -28,14 +28,12 @@ fn balls(lamps: u32) -> (Arc<Scene>, View) {
 }
 
 /// Studio without a sun, in a room without light.
-fn dark(lights: f32) -> Stack {
+fn dark(lights: f64) -> Stack {
     let mut stack = stack(&["studio"]);
-    stack.0[0].put(&studio::Studio {
-        sun: [0.0, 0.0, 0.0, 1.0],
-        strength: 0.0,
-        lights,
-        ..studio::Studio::default()
-    });
+    stack.0[0]
+        .set("sun", &[0.0, 0.0, 0.0, 1.0])
+        .set("strength", &[0.0])
+        .set("lights", &[lights]);
     stack
 }
 
@@ -90,8 +88,8 @@ fn mistakes_in_lamps_are_caught(reach: Reach) {
         ),
         ("max(1.0 - reach * reach, 0.0)", "max(1.0 - reach, 0.0)"),
         (
-            "for (var i = 0u; i < PUNCTUAL_LIGHTS;",
-            "for (var i = 1u; i < PUNCTUAL_LIGHTS;",
+            "for (var i = 0u; i < punctual_count();",
+            "for (var i = 1u; i < punctual_count();",
         ),
     ];
     for (from, to) in reach.of(1, mistakes) {
@@ -138,13 +136,11 @@ fn a_light_is_the_sun_of_its_direction_with_the_strength_that_its_formula_gives(
     };
     let sun = |strength: f64| {
         let mut stack = stack(&["studio"]);
-        let color = [9.0, 6.0, 3.0].map(|v| v * strength as f32 / std::f32::consts::PI);
-        stack.0[0].put(&studio::Studio {
-            sun: [color[0], color[1], color[2], 1.0],
-            sun_direction: [0.6, 0.8, 0.0, 0.0],
-            strength: 0.0,
-            ..studio::Studio::default()
-        });
+        let [red, green, blue] = [9.0, 6.0, 3.0].map(|v| v * strength / std::f64::consts::PI);
+        stack.0[0]
+            .set("sun", &[red, green, blue, 1.0])
+            .set("sun_direction", &[0.6, 0.8, 0.0])
+            .set("strength", &[0.0]);
         shown(&PlacedLight::default(), &stack)
     };
     let spot = LightKind::Spot {
@@ -162,7 +158,7 @@ fn a_light_is_the_sun_of_its_direction_with_the_strength_that_its_formula_gives(
         for factor in [1.0, 3.0] {
             let (lamp, sun) = (
                 shown(&light(kind, range_m), &dark(factor)),
-                sun(strength * f64::from(factor)),
+                sun(strength * factor),
             );
             assert!((lamp - sun).length() < 1e-5, "{kind:?}: {lamp} for {sun}");
             assert!((sun.x > 0.0) == (strength > 0.0));
@@ -173,13 +169,10 @@ fn a_light_is_the_sun_of_its_direction_with_the_strength_that_its_formula_gives(
 
 #[test]
 fn a_scene_without_its_lamps_is_the_scene_with_lamps_of_no_strength() {
-    let draw = |lamps: u32, lights: f32| {
+    let draw = |lamps: u32, lights: f64| {
         let (scene, view) = balls(lamps);
         let mut stack = stack(&["studio"]);
-        stack.0[0].put(&studio::Studio {
-            lights,
-            ..studio::Studio::default()
-        });
+        stack.0[0].set("lights", &[lights]);
         oracle::render(&scene, &view, &stack)
             .expect("it fits")
             .color

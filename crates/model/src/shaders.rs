@@ -16,6 +16,11 @@ pub trait ShaderFiles: Send + Sync {
     /// Text of `name` (a path below `shaders`, without `.wgsl`), if there is such a file.
     fn text(&self, name: &str) -> Option<String>;
 
+    /// Names of the files in `folder` (a folder below `shaders`), without `.wgsl`.
+    fn names(&self, _folder: &str) -> Vec<String> {
+        Vec::new()
+    }
+
     /// Is told the names of the parts of every module that was linked.
     fn linked(&self, parts: &mut dyn Iterator<Item = &str>);
 }
@@ -77,6 +82,26 @@ impl Library {
         let mut found = Vec::new();
         files(&EMBEDDED, &mut found);
         found.into_iter()
+    }
+
+    /// Text of `name` for what judges: the embedded one, so that a changed folder is judged by it; of
+    /// a file that the library of this process has more, that one.
+    pub fn reference(name: &str) -> Option<Cow<'static, str>> {
+        Self::Embedded
+            .text(name)
+            .or_else(|| Self::of_process().text(name))
+    }
+
+    /// Names of the files of effects: the embedded ones, and those that the library of this process
+    /// has more.
+    pub fn effects() -> BTreeSet<String> {
+        let embedded = Self::embedded()
+            .filter_map(|(name, _)| Some(name.strip_prefix("effects/")?.to_owned()));
+        let outside = match Self::of_process() {
+            Self::Embedded => Vec::new(),
+            Self::Outside(files) => files.names("effects"),
+        };
+        embedded.chain(outside).collect()
     }
 
     /// The text of every file, always in the same order.

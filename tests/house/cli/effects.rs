@@ -1,7 +1,12 @@
 //! Promise: an effect of one's own is one file: written by a command, switched on by its name,
 //! judged, and refused in one sentence.
 
-use super::*;
+use rasterlab::{cli::gallery, effects::EFFECTS, host, preset_file::schema};
+
+use super::{super::shader_parts, *};
+
+/// An effect that is not built in.
+const PLASMA: &str = include_str!("../../picture/ported/plasma.wgsl");
 
 #[test]
 fn a_new_effect_of_every_hook_is_drawn_and_judged_without_a_driver() {
@@ -61,4 +66,59 @@ fn effects_are_found_beside_the_preset_and_in_a_chosen_folder() {
         ! brings the effect ink
     ";
     elsewhere.play(&transcript.replace("HERE", &place.at("").display().to_string()));
+}
+
+/// Run by the next test in a separate process, whose environment names the folder of shaders.
+#[test]
+#[ignore = "run by an_effect_is_added_with_its_file_and_its_preset"]
+fn child_whose_shaders_have_one_effect_more() {
+    host::shaders::choose(None).expect("the parent's folder");
+    let names: Vec<&str> = EFFECTS.iter().map(|effect| effect.name.as_str()).collect();
+    assert_eq!(names.last(), Some(&"plasma"), "{names:?}");
+    let schema = schema::schema();
+    let speed = &schema["properties"]["effects"]["properties"]["plasma"]["properties"]["speed"];
+    let told = speed["description"].as_str().unwrap_or_default();
+    assert!(told.contains("Turns of color in a second"), "{speed}");
+    let table = gallery::table();
+    assert!(table.contains("<b>plasma</b> <sub>surface</sub><br>sums of waves as colors"));
+}
+
+#[test]
+fn an_effect_is_added_with_its_file_and_its_preset() {
+    let (place, shaders) = (Place::new(), shader_parts::copied());
+    let folder = shaders.path().display();
+    let file = shaders.path().join("effects/plasma.wgsl");
+    fs::write(&file, PLASMA).expect("one effect more");
+    place.play(&format!(
+        "$ bless plasma --shaders {folder}
+        > plasma: new && its preset is created, too
+        + presets/plasma.toml
+        $ list effects --shaders {folder}
+        > plasma && Turns of color in a second
+        $ render presets/plasma.toml CPU24x18 --shaders {folder} --set plasma.scale=1 -o a.png
+        $ render presets/plasma.toml CPU24x18 --shaders {folder} --set plasma.scale=8 -o b.png
+        !~ a.png b.png
+        $ check presets/plasma.toml --shaders {folder}
+        $2 check --strict presets/plasma.toml"
+    ));
+    let child = Command::new(std::env::current_exe().expect("this test"))
+        .args([
+            "--exact",
+            "cli::effects::child_whose_shaders_have_one_effect_more",
+            "--ignored",
+        ])
+        .env("RASTERLAB_SHADERS", shaders.path())
+        .output();
+    let child = finished(child.expect("the child starts"));
+    assert_eq!(child.code, 0, "{}{}", child.out, child.err);
+    // A faulty one is told before anything is drawn.
+    for (from, to, told) in [
+        ("@range(0.0, 2.0, 0.25)", "@rang(0.0, 2.0, 0.25)", "rang"),
+        ("s.screen", "s.scren", "scren"),
+    ] {
+        fs::write(&file, PLASMA.replace(from, to)).expect("a faulty effect");
+        place.play(&format!(
+            "$2 list effects --shaders {folder}\n! shaders/effects/plasma.wgsl && {told}"
+        ));
+    }
 }

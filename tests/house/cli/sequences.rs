@@ -84,3 +84,39 @@ fn an_interrupted_sequence_leaves_whole_files_alone() {
         assert!(is_whole(&bytes), "{name}");
     }
 }
+
+/// A frame shows what the clock and the keyframes say at its time, for an effect that asks for the
+/// time, and is judged as it is drawn.
+#[test]
+fn an_effect_with_the_clock_is_exported_and_judged_at_the_time_of_each_frame() {
+    let place = Place::new();
+    place.put(
+        "effects/plasma.wgsl",
+        include_str!("../../picture/ported/plasma.wgsl"),
+    );
+    let preset = |scale: &str, more: &str| {
+        format!(
+            "schema = 2\n[scene]\nbuiltin = \"knot?tess=3\"\n[clock]\nrange_s = [0.0, 1.0]\n[output]\nsize = [24, 18]\n\
+            [effects.plasma]\nspeed = 1.5\nscale = {scale}\n{more}"
+        )
+    };
+    let keys = "[animation.plasma]\nscale = [{ time_s = 0.0, value = 1.0 }, { time_s = 1.0, value = 3.0 }]\n";
+    place.put("move.toml", preset("1.0", keys));
+    place.put("scaled.toml", preset("2.0", ""));
+    place.put("still.toml", preset("2.0", "").replace("1.5", "0.0"));
+    place.play(
+        "$ SEQUENCE
+        ! 8 frames drawn, 0 kept
+        $ render move.toml --time 0.375 -o alone.png CPU
+        =~ f_003.png alone.png
+        # Half way between the keyframes; the clock alone, and without it.
+        $ render scaled.toml --time 0.5 -o scaled.png CPU
+        =~ f_004.png scaled.png
+        $ render scaled.toml --time 0.75 -o later.png CPU
+        !~ later.png scaled.png
+        $ render still.toml --time 0.5 -o still.png CPU
+        !~ still.png scaled.png
+        $ verify f_003.png CPU --json
+        /results/0/judged_by_own_text/0 \"plasma\"",
+    );
+}

@@ -213,3 +213,54 @@ fn what_the_file_says_reaches_the_effect() {
     assert!(other.image.is_some_and(|image| image.reads_previous));
     assert!(other.surface.is_none() && other.vertex.is_none());
 }
+
+/// The blocks of WGSL in `docs/effects.md`, each with its lines.
+fn blocks() -> Vec<Vec<String>> {
+    let page = include_str!("../../../docs/effects.md");
+    let blocks = page.split("```wgsl\n").skip(1);
+    let lines = |block: &str| -> Vec<String> {
+        let end = block.find("```").expect("a block ends");
+        block[..end]
+            .lines()
+            .map(|line| line.trim().into())
+            .collect()
+    };
+    blocks.map(lines).collect()
+}
+
+#[test]
+fn examples_of_the_guide_are_read_and_its_walk_through_leads_to_toon() {
+    let blocks = blocks();
+    let whole = |block: &&Vec<String>| block.iter().any(|line| line.starts_with("struct "));
+    let mut read = 0;
+    for block in blocks.iter().filter(whole) {
+        let stem = match block.iter().any(|line| line.contains("fn lantern(")) {
+            true => "lantern",
+            false => "ink",
+        };
+        rasterlab::effect_files::read("guide.wgsl", stem, &block.join("\n"))
+            .unwrap_or_else(|error| panic!("{error}"));
+        read += 1;
+    }
+    assert_eq!(read, 2);
+    // Each line of toon stands there, and nothing else that later lines do not replace.
+    let toon = include_str!("../../../shaders/effects/toon.wgsl")
+        .lines()
+        .skip(1);
+    let toon: Vec<String> = toon
+        .map(|line| line.trim().replace("toon", "ink").replace("Toon", "Ink"))
+        .collect();
+    let told = blocks[..3].concat();
+    for line in &toon {
+        assert!(told.contains(line), "{line}");
+    }
+    let replaced: Vec<&String> = told[1..]
+        .iter()
+        .filter(|line| !toon.contains(line))
+        .collect();
+    let expected = [
+        "let step = min(floor(position), steps - 1.0);",
+        "s.color = vec4f(flat, s.color.a);",
+    ];
+    assert_eq!(replaced, expected);
+}

@@ -2,14 +2,35 @@
 
 use rasterlab::{
     effect_files::{duplicate, read},
-    effects::EFFECTS,
+    effects::{EFFECTS, Effect},
 };
 use rasterlab_fuzz::stress::scenes::Rng;
 
-use super::super::{
-    effect_inputs::{parameters, surface},
-    twins::same,
-};
+use super::super::effect_inputs::{parameters, surface};
+
+/// Both sides' floats, all of them within 1e-9 of the largest component, or of 1.
+fn same(
+    effect: &Effect,
+    what: &str,
+    given: impl AsRef<[f64]>,
+    expected: impl AsRef<[f64]>,
+    case: &dyn std::fmt::Debug,
+) {
+    let (given, expected) = (given.as_ref(), expected.as_ref());
+    let scale = expected
+        .iter()
+        .fold(1.0, |scale: f64, value| scale.max(value.abs()));
+    for (given, expected) in given.iter().zip(expected) {
+        let apart = (given - expected).abs();
+        let is_same =
+            apart <= 1e-9 * scale || given.is_nan() && expected.is_nan() || given == expected;
+        assert!(
+            is_same,
+            "{}: {what}: {given} for {expected}, {apart:e} apart\n{case:?}",
+            effect.name
+        );
+    }
+}
 
 #[test]
 fn a_duplicate_of_an_effect_is_read_and_says_the_same() {

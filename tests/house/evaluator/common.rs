@@ -1,6 +1,6 @@
 //! What the tests of the evaluator share: linked effects, and calls with typed values.
 
-use rasterlab::evaluator::{Limits, Machine, NoHost, Options, Precision, Program, Word};
+use rasterlab::evaluator::{LANES, Limits, Machine, NoHost, Options, Precision, Program, Word};
 
 /// The text of a built-in effect with all that it uses.
 pub fn link(effect: &str) -> String {
@@ -53,32 +53,45 @@ pub fn call(program: &Program, arguments: &[Word]) -> Vec<Word> {
         .to_vec()
 }
 
-/// Results of whole numbers, of all samples at once.
-pub fn call_all(program: &Program, samples: &[Vec<i32>]) -> Vec<Vec<i32>> {
+/// Results for any number of samples, as many at once as can be.
+pub fn words_of_all(program: &Program, samples: &[Vec<Word>]) -> Vec<Vec<Word>> {
     let mut registers = program.registers();
-    let mut alike = Vec::new();
-    for (lane, sample) in samples.iter().enumerate() {
-        alike.clear();
-        for (index, word) in sample.iter().copied().map(Word::from_i32).enumerate() {
-            match program.argument(&registers, index) {
-                Some(row) => row[lane].set(word),
-                None if index >= program.own_argument_words() => alike.push(word),
-                None => {}
+    let mut results = Vec::new();
+    for samples in samples.chunks(LANES) {
+        let mut alike = Vec::new();
+        for (lane, sample) in samples.iter().enumerate() {
+            alike.clear();
+            for (index, &word) in sample.iter().enumerate() {
+                match program.argument(&registers, index) {
+                    Some(row) => row[lane].set(word),
+                    None if index >= program.own_argument_words() => alike.push(word),
+                    None => {}
+                }
             }
         }
+        let ended = program.run(&mut registers, &alike, samples.len(), &mut NoHost);
+        assert_eq!(ended.count_ones() as usize, samples.len());
+        let word = |lane: usize, at: usize| {
+            let row = program.result(&registers, at);
+            row.map_or(samples[lane][at], |row| row[lane].get())
+        };
+        let result = |lane| {
+            (0..program.result_words())
+                .map(|at| word(lane, at))
+                .collect()
+        };
+        results.extend((0..samples.len()).map(result));
     }
-    let ended = program.run(&mut registers, &alike, samples.len(), &mut NoHost);
-    assert_eq!(ended.count_ones() as usize, samples.len());
-    let word = |lane: usize, at: usize| {
-        let row = program.result(&registers, at);
-        row.map_or(samples[lane][at], |row| row[lane].get().to_i32())
-    };
-    let result = |lane| {
-        (0..program.result_words())
-            .map(|at| word(lane, at))
-            .collect()
-    };
-    (0..samples.len()).map(result).collect()
+    results
+}
+
+/// The same of whole numbers.
+pub fn call_all(program: &Program, samples: &[Vec<i32>]) -> Vec<Vec<i32>> {
+    let words = |sample: &Vec<i32>| sample.iter().copied().map(Word::from_i32).collect();
+    let samples: Vec<Vec<Word>> = samples.iter().map(words).collect();
+    let results = words_of_all(program, &samples);
+    let numbers = |words: &Vec<Word>| words.iter().map(|word| word.to_i32()).collect();
+    results.iter().map(numbers).collect()
 }
 
 pub fn floats(values: &[f64]) -> Vec<Word> {

@@ -4,7 +4,7 @@
 
 mod builtins;
 mod builtins_of_vectors;
-mod common;
+pub mod common;
 mod lattice;
 mod limits;
 mod noise;

@@ -33,7 +33,7 @@ pub fn duplicate(effect: &Effect, name: &str) -> Result<String, String> {
         return Err("draws the scene from its light, which an effect file cannot".into());
     }
     let file = format!("effects/{}", effect.file_stem());
-    let Some(text) = Library::Embedded.text(&file) else {
+    let Some(text) = Library::reference(&file) else {
         return Err("has no text of its own".into());
     };
     if hooks.vertex.is_some() {

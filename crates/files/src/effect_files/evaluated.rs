@@ -13,6 +13,7 @@ use crate::{
     effects::{
         Effect,
         hooks::{Hooks, SampleHook, VertexHook},
+        text::built_in,
     },
     evaluator::{LowerError, Precision},
     shader::{
@@ -42,6 +43,20 @@ pub enum EvaluatedError {
 /// The text cannot be linked, is not valid, or uses what cannot be evaluated.
 pub fn evaluated(library: &Library, effect: &Arc<Effect>) -> Result<Hooks, EvaluatedError> {
     evaluated_in(library, effect, Precision::Double)
+}
+
+/// Checks the effects that the folder of shaders of this process has more than the program.
+///
+/// # Errors
+/// The first fault.
+pub fn check_added() -> Result<(), String> {
+    let is_added = |name: &String| Library::Embedded.text(&format!("effects/{name}")).is_none();
+    for name in Library::effects().into_iter().filter(is_added) {
+        let effect = built_in(&name).map_err(|error| error.to_string())?;
+        evaluated(&Library::of_process(), &Arc::new(effect))
+            .map_err(|error| format!("shaders/effects/{name}.wgsl: {error}"))?;
+    }
+    Ok(())
 }
 
 /// [`evaluated`] with floats of another precision.

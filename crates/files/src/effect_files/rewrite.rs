@@ -248,8 +248,9 @@ pub fn in_names_of_author(stem: &str, declaration: &Declaration<'_>, message: &s
     message.replace(&generated(stem, "turns"), "the counter of turns")
 }
 
-/// The end of a vertex hook: it changes offset and normal alone, and the offset by at most what the
-/// function behind `@reach` says, else the sum of the lengths.
+/// The end of a vertex hook: it changes offset and normal alone, the offset by at most what the function
+/// behind `@reach` says, else the sum of the lengths. A normal is no longer than a unit, since others
+/// move vertices along it.
 fn limited(stem: &str, declaration: &Declaration<'_>) -> String {
     let limit = match &declaration.reach {
         Some(reach) => {
@@ -266,7 +267,8 @@ fn limited(stem: &str, declaration: &Declaration<'_>) -> String {
     let distance = length(change);
     let limit = {limit};
     var kept = v;
-    kept.normal = moved.normal;
+    let squared = dot(moved.normal, moved.normal);
+    kept.normal = select(moved.normal, moved.normal / sqrt(max(squared, 1.0)), squared > 1.0001);
     kept.offset = select(moved.offset, v.offset + change * (limit / max(distance, 1e-30)), distance > limit);
     return kept;
 "

@@ -21,6 +21,15 @@ impl ShaderFiles for Folder {
         fs::read_to_string(self.0.join(format!("{name}.wgsl"))).ok()
     }
 
+    fn names(&self, folder: &str) -> Vec<String> {
+        let entries = fs::read_dir(self.0.join(folder)).into_iter().flatten();
+        entries
+            .filter_map(|entry| Some(entry.ok()?.path()))
+            .filter(|path| path.extension().is_some_and(|end| end == "wgsl"))
+            .filter_map(|path| Some(path.file_stem()?.to_str()?.to_owned()))
+            .collect()
+    }
+
     /// Adds the names to the file that `RASTERLAB_PARTS` names: `scripts/mutants.py` asks which
     /// parts a command uses.
     fn linked(&self, parts: &mut dyn Iterator<Item = &str>) {

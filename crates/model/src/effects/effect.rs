@@ -9,7 +9,7 @@ use base64::{Engine as _, engine::general_purpose::STANDARD};
 
 use super::{
     given::GivenMember,
-    hooks::{Hooks, LitEffect, SampleEffect, SampleHook, Slot, SurfaceEffect, SurfaceInput},
+    hooks::{Hooks, SampleEffect, SampleHook, Slot, SurfaceInput},
     image_file::ImageInput,
     text::built_in,
 };
@@ -60,26 +60,6 @@ impl Effect {
         }
         assert!(size_of::<P>() <= 4 * effect.defaults.len(), "{}", P::EFFECT);
         effect
-    }
-
-    /// The same effect, also on the surface hook.
-    pub fn on_surface<P: SurfaceEffect>(mut self) -> Self {
-        self.hooks.surface = Some(Arc::new(|surfaces, words| {
-            let params = read(words);
-            surfaces.iter_mut().for_each(|s| *s = P::apply(*s, &params));
-        }));
-        self
-    }
-
-    /// The same effect, on which the light that comes with a scene shines.
-    pub fn in_light<P: LitEffect>(mut self) -> Self {
-        self.hooks.lit = Some(Arc::new(|surfaces, light, words| {
-            let params = read(words);
-            surfaces
-                .iter_mut()
-                .for_each(|s| *s = P::in_light(*s, light, &params));
-        }));
-        self
     }
 
     /// The same effect, also on the sample hook.

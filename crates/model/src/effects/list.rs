@@ -1,9 +1,6 @@
 //! The list of effects.
 
-use std::{
-    collections::BTreeSet,
-    sync::{Arc, LazyLock},
-};
+use std::sync::{Arc, LazyLock};
 
 use super::{effect::Effect, hooks::Slot, text::built_in};
 use crate::shaders::Library;
@@ -61,14 +58,14 @@ const ORDER: [&str; 48] = [
     "crt",
 ];
 
-/// Every effect, in canonical order.
+/// Every effect, in canonical order: the embedded ones, and those that the folder of shaders of this
+/// process has more, without faulty ones.
 pub static EFFECTS: LazyLock<Vec<Arc<Effect>>> = LazyLock::new(|| {
-    let files: BTreeSet<String> = Library::embedded()
-        .filter_map(|(name, _)| Some(name.strip_prefix("effects/")?.to_owned()))
-        .collect();
+    let files = Library::effects();
     let others = files.iter().map(String::as_str);
     let others = others.filter(|name| !ORDER.contains(name));
-    ORDER.into_iter().chain(others).map(effect).collect()
+    let others = others.filter_map(|name| built_in(name).ok().map(Arc::new));
+    ORDER.into_iter().map(effect).chain(others).collect()
 });
 
 macro_rules! in_rust {

@@ -6,7 +6,7 @@
 macro_rules! for_each_in_rust {
     ($callback:ident) => {
         $callback![
-            points, draw_order, particles, dissolve, studio, shadow, glass, xray, overdraw, dots,
+            points, draw_order, particles, dissolve, shadow, glass, xray, overdraw, dots,
         ];
     };
 }
@@ -31,7 +31,7 @@ mod words;
 pub use self::{
     conflict::Conflict,
     effect::{BuiltIn, EMBEDDED_IMAGE, Effect, EffectSource, HookFunctions, constant_name, read},
-    hooks::{Surface, SurfaceEffect, SurfaceInput},
+    hooks::{Surface, SurfaceInput},
     list::EFFECTS,
     stack::{EnabledEffect, MAX_IMAGE_PASSES, Stack},
     words::Words,

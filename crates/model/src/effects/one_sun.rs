@@ -6,7 +6,6 @@ use super::{
     effect::read,
     shadow,
     stack::{EnabledEffect, Stack},
-    studio,
 };
 
 impl Stack {
@@ -32,19 +31,24 @@ impl Stack {
             return self;
         };
         let mut shadow: shadow::Shadow = read(&self.0[shadow_at].words);
-        if let Some(studio_at) = at(&self, &studio::EFFECT.name) {
-            let mut sun: studio::Studio = read(&self.0[studio_at].words);
+        let sun = at(&self, "studio").and_then(|at| {
+            let field = self.0[at].effect.field("sun_direction")?;
+            Some((at, field.offset / 4))
+        });
+        if let Some((studio_at, first)) = sun {
             let dims = shadow::Shading::of(shadow.shading) == shadow::Shading::Dim;
             if dims && shadow.strength == 0.0 {
                 return self;
             }
-            shadow.face(&mut sun.sun_direction);
+            let words = &mut self.0[studio_at].words[first..first + 4];
+            let mut toward = std::array::from_fn(|axis| f32::from_bits(words[axis]));
+            shadow.face(&mut toward);
             if !dims {
                 // Studio takes the shadow from its sun alone; Shadow itself then dims by nothing.
-                sun.sun_direction[3] = shadow.strength;
+                toward[3] = shadow.strength;
                 (shadow.shading, shadow.strength) = (shadow::Shading::Dim as u32, 0.0);
             }
-            self.0[studio_at].put(&sun);
+            words.copy_from_slice(&toward.map(f32::to_bits));
             self.0[shadow_at].put(&shadow);
             return self;
         }
@@ -84,7 +88,6 @@ mod tests {
             Effect,
             hooks::{Lighting, Surface},
             shadow::Shadow,
-            studio::Studio,
         },
         *,
     };
@@ -111,25 +114,23 @@ mod tests {
     #[test]
     fn studio_takes_a_shadow_from_its_sun_alone() {
         let mut stack = Stack::default();
-        stack.enable(&studio::EFFECT);
+        stack.enable(Effect::named("studio"));
         stack.enable(&shadow::EFFECT).put(&Shadow {
             strength: 0.75,
             ..Shadow::default()
         });
         let drawn = stack.drawn(1.0);
-        let sun = sun_of(&drawn);
+        let sun = drawn.get("studio").expect("it is on").clone();
+        let field = sun.effect.field("sun_direction").expect("it has a sun");
+        let strength = f32::from_bits(sun.words[field.offset / 4 + 3]);
         let light = drawn.light().expect("a light");
-        assert_eq!((sun.sun_direction[3], light.strength), (0.75, 0.0));
-        let toward = DVec3::from([0, 1, 2].map(|axis| f64::from(sun.sun_direction[axis])));
+        assert_eq!((strength, light.strength), (0.75, 0.0));
+        let toward = DVec3::from_slice(&sun.numbers("sun_direction"));
         assert!(light.toward().dot(toward.normalize()) > 0.999_999);
         assert_eq!(drawn.drawn(1.0), drawn, "again it is the same");
-        let shade = |sun: [f32; 4], lit: f64| {
+        let shade = |sun: [f64; 4], lit: f64| {
             let mut stack = drawn.clone();
-            let studio = Studio {
-                sun,
-                ..sun_of(&drawn)
-            };
-            stack.get_mut("studio").expect("it is on").put(&studio);
+            stack.get_mut("studio").expect("it is on").set("sun", &sun);
             let surface = Surface {
                 lit,
                 ..Surface::example(DVec3::splat(0.5), 0)
@@ -144,10 +145,6 @@ mod tests {
         assert_eq!(shade(none, 0.0), sky, "the sky casts no shadow");
         let (lit, dark) = (shade(bright, 1.0) - sky, shade(bright, 0.0) - sky);
         assert!((dark - lit * 0.25).length() < 1e-12, "{dark} of {lit}");
-    }
-
-    fn sun_of(stack: &Stack) -> Studio {
-        read(&stack.get("studio").expect("it is on").words)
     }
 
     #[test]

@@ -7,10 +7,7 @@
 
 use glam::DVec3;
 
-use super::{
-    BuiltIn, Effect, Surface, SurfaceEffect,
-    hooks::tone::{rgb, turned},
-};
+use super::{BuiltIn, Effect, hooks::tone::turned};
 use crate::{choice, words};
 
 choice! {
@@ -38,9 +35,7 @@ words! {
 }
 
 pub static EFFECT: BuiltIn = BuiltIn::new(|| {
-    Effect::declared::<Shadow>().on_surface::<Shadow>()
-    .with_shadows()
-    .into()
+    Effect::declared::<Shadow>().with_shadows().into()
 });
 
 /// Largest tangent that counts, for the slope and for the plane of a triangle between taps.
@@ -72,26 +67,5 @@ impl Shadow {
             elevation.y,
             elevation.x * azimuth.x,
         )
-    }
-}
-
-impl SurfaceEffect for Shadow {
-    fn apply(mut s: Surface, p: &Self) -> Surface {
-        let facing = s.normal.dot(p.toward()).max(0.0);
-        let arrives = 1.0 - f64::from(p.strength) * (1.0 - s.lit);
-        let light = match Shading::of(p.shading) {
-            Shading::Lambert => {
-                let up = 0.5 + 0.5 * s.normal.y;
-                rgb(p.light) * (facing * arrives)
-                    + rgb(p.ground)
-                    + (rgb(p.sky) - rgb(p.ground)) * up
-            }
-            // A surface that the light grazes was dim before.
-            Shading::Dim => {
-                DVec3::splat(1.0 - f64::from(p.strength) * (1.0 - s.lit * (4.0 * facing).min(1.0)))
-            }
-        };
-        s.color = ((s.color.truncate() - s.glow) * light + s.glow).extend(s.color.w);
-        s
     }
 }

@@ -141,6 +141,25 @@ pub fn scatter<'a, T: Send, V: FnMut(&mut T, usize, usize, Hit)>(
     cells: &mut [T],
     visitor: impl Fn(&'a OrientedTriangle) -> V + Sync,
 ) -> Result<(), Canceled> {
+    scatter_rows(tests, triangles, view, cells, |triangle| {
+        let mut visit = visitor(triangle);
+        move |cells: &mut [T], y: usize, hits: &[(usize, Hit)]| {
+            for &(x, hit) in hits {
+                visit(&mut cells[x], x, y, hit);
+            }
+        }
+    })
+}
+
+/// The same, with all samples of a triangle in a row of pixels at once: their columns, from left to
+/// right, and the cells of the row.
+pub fn scatter_rows<'a, T: Send, V: FnMut(&mut [T], usize, &[(usize, Hit)])>(
+    tests: &SampleTests,
+    triangles: &'a [OrientedTriangle],
+    view: &View,
+    cells: &mut [T],
+    visitor: impl Fn(&'a OrientedTriangle) -> V + Sync,
+) -> Result<(), Canceled> {
     const ROWS: usize = 8;
     let (width, height) = (view.width as usize, view.height as usize);
     if cells.is_empty() {
@@ -162,35 +181,32 @@ pub fn scatter<'a, T: Send, V: FnMut(&mut T, usize, usize, Hit)>(
         .enumerate()
         .try_for_each(|(band, (cells, triangles))| {
             let first_row = band * ROWS;
+            let mut drawn = Vec::new();
             for triangle in triangles {
                 checkpoint.pass()?;
                 let (columns, rows) = triangle.bounds(view, tests);
                 let mut visit = visitor(triangle);
                 for y in rows.start.max(first_row)..rows.end.min(first_row + ROWS) {
-                    let cells = &mut cells[(y - first_row) * width..][..width];
+                    drawn.clear();
                     if tests.are_simple() {
-                        for x in columns.clone() {
-                            if let Some(hit) = triangle.at(x, y, tests) {
-                                visit(&mut cells[x], x, y, hit);
-                            }
-                        }
-                        continue;
+                        let hit = |x: usize| Some((x, triangle.at(x, y, tests)?));
+                        drawn.extend(columns.clone().filter_map(hit));
+                    } else {
+                        let (row, hits): (Vec<_>, Vec<_>) = columns
+                            .clone()
+                            .filter_map(|x| {
+                                let edges = triangle.edges(x, y, tests.unit);
+                                let hit = triangle.covers(x, y, &edges, tests)?;
+                                Some(((x as u32, edges.map(|edge| edge.value)), hit))
+                            })
+                            .unzip();
+                        let left_out = tests.left_out_in_row(triangle, y as u32, &row);
+                        let all = row.iter().zip(hits).zip(left_out);
+                        drawn.extend(all.filter_map(|(((x, _), hit), left_out)| {
+                            left_out.is_none().then_some((*x as usize, hit))
+                        }));
                     }
-                    let (row, hits): (Vec<_>, Vec<_>) = columns
-                        .clone()
-                        .filter_map(|x| {
-                            let edges = triangle.edges(x, y, tests.unit);
-                            let hit = triangle.covers(x, y, &edges, tests)?;
-                            Some(((x as u32, edges.map(|edge| edge.value)), hit))
-                        })
-                        .unzip();
-                    let left_out = tests.left_out_in_row(triangle, y as u32, &row);
-                    for (((x, _), hit), left_out) in row.iter().zip(hits).zip(left_out) {
-                        let x = *x as usize;
-                        if left_out.is_none() {
-                            visit(&mut cells[x], x, y, hit);
-                        }
-                    }
+                    visit(&mut cells[(y - first_row) * width..][..width], y, &drawn);
                 }
             }
             Ok(())

@@ -6,7 +6,7 @@ use glam::{DVec3, DVec4};
 use super::{
     super::{perturbation::Perturbation, shot::Shot},
     background::background,
-    coverage::{Hit, scatter},
+    coverage::{Hit, scatter_rows},
     draw_order::ranks,
     glass::{glass_colors, glass_layers},
     sample_rules::SampleTests,
@@ -183,14 +183,17 @@ fn sums(input: &LayerInput, params: &Xray, bits: u32) -> Result<Vec<LayerSum>, C
         Light::of(&input.shot, input.geometry),
     );
     let (ranks, light) = (&ranks, light.as_ref());
-    scatter(input.tests, input.triangles, view, &mut sums, |triangle| {
+    scatter_rows(input.tests, input.triangles, view, &mut sums, |triangle| {
         let mut surface: Option<Option<SurfaceTriangle<'_>>> = None;
         let rank = ranks.get(triangle.id as usize).copied().unwrap_or(0.0);
-        move |sum: &mut LayerSum, x: usize, y: usize, hit: Hit| {
-            let pixel = y * view.width as usize + x;
-            if hit.depth < window_depth(input, params, pixel)
-                && !is_front(input, pixel, triangle.id, hit.depth * (1.0 + FRONT))
-            {
+        move |sums: &mut [LayerSum], y: usize, hits: &[(usize, Hit)]| {
+            let counts = |(x, hit): &&(usize, Hit)| {
+                let pixel = y * view.width as usize + x;
+                hit.depth >= window_depth(input, params, pixel)
+                    || is_front(input, pixel, triangle.id, hit.depth * (1.0 + FRONT))
+            };
+            let columns: Vec<usize> = hits.iter().filter(counts).map(|(x, _)| *x).collect();
+            if columns.is_empty() {
                 return;
             }
             let Some(known) = surface.get_or_insert_with(|| {
@@ -198,23 +201,25 @@ fn sums(input: &LayerInput, params: &Xray, bits: u32) -> Result<Vec<LayerSum>, C
             }) else {
                 return;
             };
-            let surface = known.surface(x, y, &Perturbation::default());
-            let lit = light.map_or(0.0, |light| {
-                light.arrives(&known.lit_point(&surface), triangle.id, 0.0)
-            });
-            let shaded = stack.shade(
+            let layer = |&x: &usize| {
+                let surface = known.surface(x, y, &Perturbation::default());
+                let lit = light.map_or(0.0, |light| {
+                    light.arrives(&known.lit_point(&surface), triangle.id, 0.0)
+                });
                 Surface {
                     rank,
                     lit,
                     ..surface
-                },
-                known.scopes,
-                &input.shot.light(),
-            );
-            let weight = fixed_weight(params.weight_of(&shaded), 0.0);
-            let color = fixed_color(shaded.color.truncate(), 0.0, bits);
-            (0..3).for_each(|c| sum.sums[c] += color[c] * weight);
-            sum.weight += weight;
+                }
+            };
+            let mut layers: Vec<Surface> = columns.iter().map(layer).collect();
+            stack.shade_all(&mut layers, known.scopes, &input.shot.light());
+            for (x, shaded) in columns.into_iter().zip(layers) {
+                let (sum, weight) = (&mut sums[x], fixed_weight(params.weight_of(&shaded), 0.0));
+                let color = fixed_color(shaded.color.truncate(), 0.0, bits);
+                (0..3).for_each(|c| sum.sums[c] += color[c] * weight);
+                sum.weight += weight;
+            }
         }
     })?;
     Ok(sums)

@@ -1,7 +1,6 @@
 //! Hooks: where in the pipeline an effect acts. The same signatures in WGSL and here, where they
 //! are f64 or integers.
 
-pub mod environment;
 mod front;
 mod image;
 mod passes;
@@ -19,9 +18,7 @@ pub use passes::{
 };
 pub use sample::{Sample, SampleEffect, SampleHook, SetupFunction, TriangleSetup};
 pub use slot::{Layers, Shape, Slot};
-pub use surface::{
-    Finish, Lighting, LitEffect, Surface, SurfaceEffect, SurfaceInput, Transmission,
-};
+pub use surface::{Finish, Lighting, Surface, SurfaceInput, Transmission};
 pub use vertex::{ErrorBound, ROUNDING, Vertex, VertexFunction, VertexHook};
 
 use std::sync::Arc;

@@ -2,10 +2,7 @@
 
 use glam::{DVec2, DVec3, DVec4};
 
-use crate::{
-    effects::Words,
-    scene::{material::Material, panorama::Panorama, punctual::PlacedLight},
-};
+use crate::scene::{material::Material, panorama::Panorama, punctual::PlacedLight};
 
 /// What the rasterizer knows about a visible sample; a surface effect changes it and passes it on.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -251,11 +248,6 @@ impl SurfaceInput {
     }
 }
 
-/// The f64 side of an effect on the surface hook.
-pub trait SurfaceEffect: Words {
-    fn apply(surface: Surface, params: &Self) -> Surface;
-}
-
 /// The light that comes with a scene.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Lighting<'a> {
@@ -270,11 +262,4 @@ impl Lighting<'_> {
     pub const fn is_none(&self) -> bool {
         self.lights.is_empty() && self.panorama.is_none()
     }
-}
-
-/// The f64 side of an effect on the surface hook that the light of a scene shines on. In WGSL, the
-/// function `NAME_under_lights` in the section `lights` of its file, and `variants/surroundings`.
-pub trait LitEffect: SurfaceEffect {
-    /// The same as [`SurfaceEffect::apply`] in this light.
-    fn in_light(surface: Surface, light: &Lighting<'_>, params: &Self) -> Surface;
 }

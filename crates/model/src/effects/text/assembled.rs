@@ -37,7 +37,7 @@ pub fn assembled(stem: &str, roots: &[&str], constants: &str, has_picture: bool)
     text
 }
 
-/// Adds what a file declares, and what those that it uses do. Of a file with variants the first one
+/// Adds what a file declares, and what those that it uses do. Of a file with sections the first one
 /// counts, or that of pictures.
 fn declare_file(
     name: &str,
@@ -45,19 +45,17 @@ fn declare_file(
     known: &mut BTreeSet<String>,
     declared: &mut Declared,
 ) {
-    let found = Library::Embedded.text(name);
+    let found = Library::reference(name);
     let Some(file) = found.filter(|_| known.insert(name.to_owned())) else {
         return;
     };
     let parts = sections(&file);
-    let variant = match name.starts_with("variants/") {
-        true => parts
-            .iter()
-            .find(|(name, _)| has_picture && *name == "picture")
-            .or(parts.get(1)),
+    let picture = || parts.iter().find(|(name, _)| *name == "picture");
+    let section = match name.starts_with("variants/") && has_picture {
+        true => picture(),
         false => None,
     };
-    for (_, range) in parts.first().into_iter().chain(variant) {
+    for (_, range) in parts.first().into_iter().chain(section.or(parts.get(1))) {
         let text = &file[range.clone()];
         declare(&without_attributes(text), declared);
         let used = text

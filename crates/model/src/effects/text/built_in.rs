@@ -21,8 +21,8 @@ use crate::{
     effects::{
         Effect, SurfaceInput, constant_name,
         hooks::{
-            Hooks, ImageAt, ImageHook, ImagePass, PassHook, Picture, Pixel, Sample, SampleHook,
-            Surface, VertexHook,
+            Hooks, ImageAt, ImageHook, ImagePass, Lighting, LitFunction, PassHook, Picture, Pixel,
+            Sample, SampleHook, Surface, VertexHook,
         },
     },
     evaluator::Precision,
@@ -36,7 +36,7 @@ use crate::{
 /// The first fault of the file.
 pub fn built_in(name: &str) -> Result<Effect, EffectError> {
     let file = format!("shaders/effects/{name}.wgsl");
-    let whole = Library::Embedded.text(&format!("effects/{name}"));
+    let whole = Library::reference(&format!("effects/{name}"));
     let whole = whole.unwrap_or_default();
     let text = Text {
         file: &file,
@@ -56,11 +56,35 @@ pub fn built_in(name: &str) -> Result<Effect, EffectError> {
         is_repeatable: |_| true,
     };
     effect.hooks = hooks(&effect, &declaration);
+    if sections(&whole).iter().any(|(section, _)| *section == LIT) {
+        effect.hooks.lit = Some(lit(&effect));
+    }
     Ok(effect)
 }
 
 /// The file of an effect that shows what surrounds the scene uses this one.
 const SURROUNDINGS: &str = "variants/surroundings";
+
+/// The section of a file whose function `NAME_under_lights` is on the surface hook where the scene
+/// brings light.
+const LIT: &str = "lights";
+
+fn lit(effect: &Effect) -> Arc<LitFunction> {
+    let names = vec![format!("{}_under_lights", effect.name)];
+    let [formulas, picture] = [false, true].map(|has_picture| {
+        let text = LazyText::new(effect, names.clone(), has_picture);
+        LazyLock::new(move || twin::lit(text.exact(0), text.rounded(0)))
+    });
+    Arc::new(
+        move |surfaces: &mut [Surface], light: &Lighting<'_>, words: &[u32]| {
+            let run = match light.panorama {
+                Some(_) => &*picture,
+                None => &*formulas,
+            };
+            run(surfaces, light, words)
+        },
+    )
+}
 
 /// The hooks that the functions of a file are on.
 fn hooks(effect: &Effect, declaration: &Declaration<'_>) -> Hooks {

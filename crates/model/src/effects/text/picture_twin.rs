@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use glam::{DVec2, DVec3, DVec4};
+use glam::{DVec2, DVec4};
 
-use super::twin::{Function, each_side, perturbed, strength};
+use super::twin::{Function, each_side, perturbed, strength, surroundings};
 use crate::{
     effects::hooks::{ImageAt, ImageHook, ImagePass, PassHook, Picture, Pixel},
     evaluator::{Host, Word},
@@ -131,14 +131,7 @@ impl Host for PassHost<'_> {
             14 => at.kept(pixel()[0], pixel()[1]),
             15 => at.kept_at(place()),
             16 | 17 => {
-                let toward = DVec3::from([0, 1, 2].map(|axis| arguments[axis].to_f64()));
-                let light = at
-                    .input
-                    .panorama
-                    .map_or(DVec3::ZERO, |panorama| match index {
-                        16 => panorama.irradiance(toward),
-                        _ => panorama.radiance(toward, arguments[3].to_f64(), moved_place(at)),
-                    });
+                let light = surroundings(at.input.panorama, index, arguments, moved_place(at));
                 result.copy_from_slice(&light.to_array().map(Word::from_f64));
                 return;
             }

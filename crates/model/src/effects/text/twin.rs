@@ -9,20 +9,21 @@ use std::{
     sync::{Arc, Weak},
 };
 
-use glam::{DVec3, DVec4};
+use glam::{DVec2, DVec3, DVec4};
 
 use crate::{
     effects::{
         Effect,
         hooks::{
-            ErrorBound, ROUNDING, Sample, SampleHook, SetupFunction, Surface, SurfaceFunction,
-            TriangleSetup, Vertex, VertexFunction, VertexHook,
+            ErrorBound, Lighting, LitFunction, ROUNDING, Sample, SampleHook, SetupFunction,
+            Surface, SurfaceFunction, TriangleSetup, Vertex, VertexFunction, VertexHook,
         },
         image_file::ImageFile,
     },
     evaluator::{Host, LANES, LowerError, NoHost, Options, Precision, Program, Registers, Word},
     math::hash,
     params::{Field, ValueType, WgslType},
+    scene::panorama::Panorama,
 };
 
 mod vertex;
@@ -31,9 +32,9 @@ pub use vertex::{moving, vertex};
 /// Instructions of one call. The loops of an effect end long before.
 const MAX_STEPS: u64 = 100_000_000;
 /// Functions of the library that read more than their arguments: of `lib/image`,
-/// `lib/image_pass`, `lib/image_direction`, `lib/image_kept` and `lib/panorama`, then of
-/// `lib/image_file`.
-pub const EXTERNALS: [&str; 21] = [
+/// `lib/image_pass`, `lib/image_direction`, `lib/image_kept`, `lib/panorama` and `lib/punctual`, then
+/// of `lib/image_file`.
+pub const EXTERNALS: [&str; 23] = [
     "image_has",
     "image_at",
     "image_background",
@@ -53,11 +54,16 @@ pub const EXTERNALS: [&str; 21] = [
     "panorama_irradiance",
     "panorama_radiance",
     "image_meters_apart",
+    "punctual_arriving",
+    "punctual_count",
     "image_file_size",
     "image_file_texel",
 ];
 /// Index of the first function of `lib/image_file`.
-const IMAGE_FILES: usize = 19;
+const IMAGE_FILES: usize = 21;
+/// Index of the first function of `lib/panorama`, and of that which counts lights.
+const PANORAMA: usize = 16;
+const LIGHTS: usize = 20;
 /// How much the inputs of a color may be off on the f32 side, relative to the largest component of
 /// each: as a fraction of the step's offset.
 const INPUT_ERROR: f64 = 0.25;
@@ -353,17 +359,68 @@ pub(super) fn each_side<'f, S>(
 /// constants alone decide is moved by no input.
 pub fn surface(exact: Function, rounded: Function) -> Arc<SurfaceFunction> {
     Arc::new(move |surfaces: &mut [Surface], words: &[u32]| {
-        let sides = [&exact, &rounded];
-        each_side(
-            surfaces,
-            sides,
-            |s| s.step_offset,
-            |together, function| {
-                let (write, read) = (write_surfaces, read_surfaces);
-                let left = |s: &mut Surface| s.color = DVec4::NAN;
-                function.run(together, words, &mut NoHost, write, read, left);
-            },
-        );
+        shade(surfaces, words, [&exact, &rounded], &mut NoHost);
+    })
+}
+
+/// The surface hook in the light that comes with a scene.
+pub fn lit(exact: Function, rounded: Function) -> Arc<LitFunction> {
+    Arc::new(
+        move |surfaces: &mut [Surface], light: &Lighting<'_>, words: &[u32]| {
+            shade(surfaces, words, [&exact, &rounded], &mut LightHost(light));
+        },
+    )
+}
+
+fn shade(surfaces: &mut [Surface], words: &[u32], sides: [&Function; 2], host: &mut dyn Host) {
+    each_side(
+        surfaces,
+        sides,
+        |s| s.step_offset,
+        |together, function| {
+            let (write, read) = (write_surfaces, read_surfaces);
+            let left = |s: &mut Surface| s.color = DVec4::NAN;
+            function.run(together, words, host, write, read, left);
+        },
+    );
+}
+
+/// Answers what a surface effect asks of the light that comes with a scene.
+struct LightHost<'a>(&'a Lighting<'a>);
+
+impl Host for LightHost<'_> {
+    fn external(&mut self, index: usize, _: usize, arguments: &[Word], result: &mut [Word]) {
+        let Self(Lighting { lights, panorama }) = self;
+        if index == LIGHTS {
+            result[0] = Word::from_u32(lights.len() as u32);
+        } else if index == LIGHTS - 1 {
+            let position = DVec3::from([1, 2, 3].map(|axis| arguments[axis].to_f64()));
+            let light = lights.get(arguments[0].to_u32() as usize);
+            let (toward, light) = light.map_or((DVec3::ZERO, DVec3::ZERO), |light| {
+                let arriving = light.arriving(position);
+                (arriving.toward, arriving.light)
+            });
+            let [toward, light] = [toward, light].map(|v| v.to_array().map(Word::from_f64));
+            result.copy_from_slice(&[toward, light].concat());
+        } else {
+            let light = surroundings(*panorama, index, arguments, DVec2::ZERO);
+            result.copy_from_slice(&light.to_array().map(Word::from_f64));
+        }
+    }
+}
+
+/// What the function `index` of `lib/panorama` gives of a picture of surroundings, whose places are
+/// moved by `moved`; nothing without one.
+pub(super) fn surroundings(
+    panorama: Option<&Panorama>,
+    index: usize,
+    arguments: &[Word],
+    moved: DVec2,
+) -> DVec3 {
+    let toward = DVec3::from([0, 1, 2].map(|axis| arguments[axis].to_f64()));
+    panorama.map_or(DVec3::ZERO, |panorama| match index {
+        PANORAMA => panorama.irradiance(toward),
+        _ => panorama.radiance(toward, arguments[3].to_f64(), moved),
     })
 }
 
