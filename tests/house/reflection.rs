@@ -89,7 +89,7 @@ fn from_sun(
 
 /// What a surface shows in a room that shines with 1 from all sides, lit as by suns.
 fn furnace(text: &Text, reflector: &[f64], alpha: f64, cosine: f64) -> f64 {
-    let (view, points) = (around(cosine, 0.0), square(40));
+    let (view, points) = (around(cosine, 0.0), square(96));
     let squared = alpha * alpha;
     // Microfacets as often as there are, and directions by their cosine.
     let halves = points.iter().map(|at| {
@@ -123,8 +123,8 @@ fn furnace(text: &Text, reflector: &[f64], alpha: f64, cosine: f64) -> f64 {
 #[test]
 fn what_is_white_stays_white_at_every_roughness_and_angle() {
     let text = Text::of_studio();
-    for roughness in [0.08, 0.15, 0.3, 0.6, 1.0f64] {
-        for cosine in [0.1, 0.35, 0.7, 1.0] {
+    for roughness in [0.08, 0.3, 0.6, 1.0f64] {
+        for cosine in [0.1, 0.35, 1.0] {
             let alpha = roughness * roughness;
             for (kind, diffuse, straight) in [
                 ("metal", 0.0, 1.0),
@@ -272,11 +272,11 @@ fn light_on_a_matt_surface_is_that_of_the_environment_up_to_the_second_band() {
 
 #[test]
 fn rough_mirrors_show_about_what_the_integral_over_microfacets_does() {
-    let (text, directions, points) = (Text::of_studio(), all_around(), square(48));
+    let (text, directions, points) = (Text::of_studio(), all_around(), square(128));
     let one = || std::iter::repeat(1.0);
     for sky in Sky::all(&text) {
         let all = mean(&sky.radiance(&directions, 0.0), one());
-        for roughness in [0.3f64, 0.6, 1.0] {
+        for roughness in [0.3f64, 1.0] {
             let alpha = roughness * roughness;
             for direction in [DVec3::Y, DVec3::NEG_Y, DVec3::X, sky.lamp()] {
                 let (right, up) = direction.any_orthonormal_pair();

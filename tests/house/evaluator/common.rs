@@ -73,7 +73,7 @@ pub fn words_of_all(program: &Program, samples: &[Vec<Word>]) -> Vec<Vec<Word>> 
         assert_eq!(ended.count_ones() as usize, samples.len());
         let word = |lane: usize, at: usize| {
             let row = program.result(&registers, at);
-            row.map_or(samples[lane][at], |row| row[lane].get())
+            row.map_or_else(|| samples[lane][at], |row| row[lane].get())
         };
         let result = |lane| {
             (0..program.result_words())
