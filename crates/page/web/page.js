@@ -161,7 +161,7 @@ async function begun() {
   opened = preset.text();
   if (!kind.contains("front")) {
     document.title = `${preset.name()} · rasterlab`;
-    [find("name").textContent, find("about").textContent] = [preset.name(), preset.about() || (address.model ? "A model from an address, in the plain look" : "")];
+    [find("name").textContent, find("about").textContent] = [preset.name(), preset.about() || (address.id === "model" ? "A model from an address, in the plain look" : "")];
   }
   const code = preset.brought_code();
   if (code) await allowed(code);
