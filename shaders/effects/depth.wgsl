@@ -17,7 +17,9 @@ struct Depth {
 @smooth
 fn depth(surface: Surface, p: Depth) -> Surface {
     var s = surface;
-    let fitted = (s.depth_m - s.depth_range_m.x) / (s.depth_range_m.y - s.depth_range_m.x);
+    // A scene that is flat across the view has no depth to be spread; what f32 tells apart is spread no further.
+    let room_m = max(s.depth_range_m.y - s.depth_range_m.x, 1e-4 * abs(s.depth_range_m.y) + 1e-20);
+    let fitted = (s.depth_m - s.depth_range_m.x) / room_m;
     let position = select(s.depth_m * p.scale + p.offset, fitted, p.fit != 0u);
     let shade = p.near + (p.far - p.near) * clamp(position, 0.0, 1.0);
     s.glow = vec3f(0.0);

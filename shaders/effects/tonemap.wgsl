@@ -76,5 +76,5 @@ fn tonemap_agx(light: vec3f) -> vec3f {
     let inset = max(TONEMAP_AGX_IN * (TONEMAP_REC2020_OF_SRGB * light), vec3f(1e-10));
     let x = clamp((log2(inset) - TONEMAP_AGX_DARKEST) / TONEMAP_AGX_STOPS, vec3f(0.0), vec3f(1.0));
     let curved = (((((15.5 * x - 40.14) * x + 31.96) * x - 6.868) * x + 0.4298) * x + 0.1191) * x - 0.00232;
-    return TONEMAP_SRGB_OF_REC2020 * pow(max(TONEMAP_AGX_OUT * curved, vec3f(0.0)), vec3f(2.2));
+    return TONEMAP_SRGB_OF_REC2020 * pow(max(TONEMAP_AGX_OUT * curved, vec3f(1e-10)), vec3f(2.2));
 }

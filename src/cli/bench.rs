@@ -112,7 +112,9 @@ fn lines(rows: &[BenchRow]) -> Vec<Vec<String>> {
         ("MS P95", true, |row| figure(row.ms_p95, 3)),
         ("N", true, |row| row.samples.to_string()),
         ("WRONG", true, |row| count(row.error.wrong_triangles)),
-        ("SNAP", true, |row| count(row.error.explained_by_snap)),
+        ("BY ROUNDING", true, |row| {
+            count(row.error.explained_by_snap)
+        }),
         ("HOLES", true, |row| count(row.error.holes)),
         ("DOUBLE", true, |row| count(row.error.double_hits)),
         ("MAX", true, |row| {

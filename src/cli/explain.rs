@@ -292,8 +292,8 @@ fn check_text(check: &Check) -> String {
         (false, _) => "OVER THE TOLERANCE",
     };
     format!(
-        "error      at most {:.0} ppm of the pixels with another triangle predicted, {:.0} measured, {:.0} allowed, and {:.0} more where corners \
-         snap to the other neighbor: {verdict}\n",
+        "error      at most {:.0} ppm of the pixels with another triangle predicted, {:.0} measured, {:.0} allowed, and {:.0} more by rounding of \
+         corners: {verdict}\n",
         check.predicted.wrong_ppm, check.wrong_ppm, check.tolerance.wrong_ppm, check.snap_ppm
     )
 }

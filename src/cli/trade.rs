@@ -154,7 +154,7 @@ fn prices(rows: &[TradeRow]) -> Vec<Vec<String>> {
         [
             format!("{triangles} TRIANGLES, MS"),
             "X".into(),
-            "WRONG PPM".into(),
+            "BY ROUNDING PPM".into(),
             "HOLES+DOUBLES".into(),
         ]
     });
@@ -216,7 +216,9 @@ fn lines(rows: &[TradeRow]) -> Vec<Vec<String>> {
         }),
         ("N", true, |row| row.samples.to_string()),
         ("OUTLIERS", true, |row| row.outliers.to_string()),
-        ("WRONG PPM", true, |row| error(row, 1, |e| e.wrong_ppm)),
+        ("BY ROUNDING PPM", true, |row| {
+            error(row, 1, |e| e.wrong_ppm)
+        }),
         ("HOLES/MPX", true, |row| error(row, 1, |e| e.holes_per_mpx)),
         ("DOUBLE/MPX", true, |row| {
             error(row, 1, |e| e.double_hits_per_mpx)

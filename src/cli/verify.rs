@@ -426,8 +426,19 @@ fn triptych(
 
 fn text(rows: &[Row], class: &str) -> String {
     let head = [
-        "PRESET", "OPTION", "CLASS", "WRONG", "SNAP", "HOLES", "DOUBLE", "NO ID", "OVERFLOW",
-        "STEPS", "MAX", "RMS", "VERDICT",
+        "PRESET",
+        "OPTION",
+        "CLASS",
+        "WRONG",
+        "BY ROUNDING",
+        "HOLES",
+        "DOUBLE",
+        "NO ID",
+        "OVERFLOW",
+        "STEPS",
+        "MAX",
+        "RMS",
+        "VERDICT",
     ];
     let mut lines = vec![head.map(str::to_owned).to_vec()];
     lines.extend(rows.iter().map(|row| {

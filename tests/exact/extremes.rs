@@ -60,6 +60,7 @@ fn check_presets(half: usize, reach: Reach) {
         let path = folder.join(format!("{name}.toml"));
         let preset_file = preset_file::open(&path.to_string_lossy(), &Folders::default())
             .unwrap_or_else(|error| panic!("{error}"));
+        faults.extend(preset_file.warnings.iter().cloned());
         let preset = &preset_file.preset;
         let test = preset.test.clone().unwrap_or_default();
         let scene = preset_file::load_scene(preset, preset_file.path.as_deref())

@@ -4,6 +4,7 @@
 mod architecture;
 mod cli;
 mod dependencies;
+mod effect_edges;
 mod effect_files;
 mod effect_inputs;
 mod evaluator;

@@ -264,9 +264,7 @@ fn an_effect_is_copied_with_its_values_into_another_preset() {
     lab.run_steps(4);
     settle(&mut lab);
     assert!(
-        lab.state()
-            .log_text()
-            .contains("effects.toon.steps 300 lies outside"),
+        lab.state().log_text().contains("effects.toon.steps takes"),
         "{}",
         lab.state().log_text()
     );

@@ -208,7 +208,7 @@ fn a_value_behind_a_path_is_set_as_one_step_and_a_wrong_one_is_refused_in_words(
     assert!(
         lab.state()
             .log_text()
-            .contains("facet.amount 7 lies outside 0..=1"),
+            .contains("facet.amount takes 0 to 1, not 7"),
         "{}",
         lab.state().log_text()
     );

@@ -173,6 +173,50 @@ impl Op {
         }
     }
 
+    /// Does it compute a float of floats?
+    pub(crate) fn makes_float(self) -> bool {
+        matches!(
+            self,
+            Op::SqrtF
+                | Op::InverseSqrtF
+                | Op::LogF
+                | Op::Log2F
+                | Op::ExpF
+                | Op::Exp2F
+                | Op::PowF
+                | Op::TanF
+                | Op::AsinF
+                | Op::AcosF
+                | Op::AcoshF
+                | Op::AtanhF
+                | Op::Atan2F
+                | Op::AddF
+                | Op::SubF
+                | Op::MulF
+                | Op::DivF
+                | Op::RemF
+                | Op::MulAddF
+                | Op::FmaF
+                | Op::MinF
+                | Op::MaxF
+                | Op::ClampF
+                | Op::SaturateF
+                | Op::MixF
+                | Op::SmoothStepF
+                | Op::FractF
+        )
+    }
+
+    /// Does WGSL leave open what it makes of these operands?
+    pub(crate) fn is_open(self, operands: [f64; 3]) -> bool {
+        let is_edge = match self {
+            Op::PowF => operands[0] <= 0.0,
+            Op::SmoothStepF => operands[0] == operands[1],
+            _ => false,
+        };
+        is_edge || self.makes_float() && !operands.iter().all(|float| float.is_finite())
+    }
+
     /// Is `d` the index of an instruction?
     pub(crate) fn is_jump(self) -> bool {
         self >= Op::Jump

@@ -130,7 +130,7 @@ impl Program {
                 let (operands, mut result) = ([i.a, i.b, i.c].map(word), Word::ZERO);
                 match self.precision {
                     Precision::Double => evaluate::<false>(i.op, One(operands, &mut result)),
-                    Precision::Single => evaluate::<true>(i.op, One(operands, &mut result)),
+                    _ => evaluate::<true>(i.op, One(operands, &mut result)),
                 }
                 registers.alike[i.d as usize] = result;
             }
@@ -150,7 +150,7 @@ impl Program {
         let all = u64::MAX >> (LANES - count.clamp(1, LANES));
         match self.precision {
             Precision::Double => self.execute::<false>(registers, all, host),
-            Precision::Single => self.execute::<true>(registers, all, host),
+            _ => self.execute::<true>(registers, all, host),
         }
     }
 
@@ -257,6 +257,27 @@ impl Program {
                         }
                     }
                     next = d;
+                }
+                op if self.precision == Precision::Strict => {
+                    let arity = op.arity();
+                    let read = |lane: usize| {
+                        let of = |register: u32| rows[register as usize][lane].get().to_f64();
+                        let floats = [i.a, i.b, i.c];
+                        std::array::from_fn(|at| if at < arity { of(floats[at]) } else { 0.0 })
+                    };
+                    let mut open = 0;
+                    each_lane(active, |lane| {
+                        open |= u64::from(op.is_open(read(lane))) << lane
+                    });
+                    evaluate::<SINGLE>(op, Lanes::new(rows, i, active, arity));
+                    let is_finite = |word: Word| word.to_f64().is_finite();
+                    if op.makes_float() {
+                        open |= active & !lanes_of(&rows[d], active, is_finite);
+                    }
+                    if open != 0 {
+                        *stopped_at = next - 1;
+                        (active, ended) = (active & !open, ended & !open);
+                    }
                 }
                 op => evaluate::<SINGLE>(op, Lanes::new(rows, i, active, op.arity())),
             }

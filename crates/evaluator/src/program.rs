@@ -14,6 +14,9 @@ pub enum Precision {
     Double,
     /// Rounded to f32 after every operation, to compare with GPUs and other evaluators.
     Single,
+    /// The same, and a sample stops where WGSL leaves the value of an operation open: what it makes
+    /// or reads is not finite, a power has no positive base, or a smooth step no width.
+    Strict,
 }
 
 /// Bounds on what a function may take.

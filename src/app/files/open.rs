@@ -335,9 +335,6 @@ fn settle(state: &mut State, key: SceneKey, scene: &Scene) -> SceneKey {
         && is_of(&request.opened)
     {
         request.opened.settle(scene, true);
-        if scene.glare().is_some() && request.opened.is_plain() {
-            request.said += "; its lights, which are too strong for a picture, are dimmed";
-        }
         let settled = SceneKey::of(&request.opened);
         request.loading = Some(settled.clone());
         return settled;
@@ -394,7 +391,18 @@ pub fn announce(state: &mut State) {
     else {
         return;
     };
-    if state.session.scenes.shown_for(&key).is_some() && key == open {
-        state.notify(Level::Info, said);
+    let Some(scene) = state.session.scenes.shown_for(&key) else {
+        return;
+    };
+    if key != open {
+        return;
     }
+    let told = match scene.notes.as_slice() {
+        [] => return state.notify(Level::Info, said),
+        [note] => format!("{said}; {note}"),
+        [note, rest @ ..] => format!("{said}; {note}; the log has {} more", rest.len()),
+    };
+    // The log has the notes already.
+    state.log.add(Level::Info, said);
+    state.log.toast(Level::Warning, &told, state.now_s);
 }

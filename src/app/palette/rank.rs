@@ -117,11 +117,17 @@ pub fn rank(
         })
         .collect();
     found.sort_by_key(|(points, _)| -points);
-    // What is called exactly so comes before values and parameters: "Scene sphere" could also set
-    // `scene.builtin`.
+    // What is called exactly so comes before values and parameters, as does an action that begins
+    // so: "Scene sphere" could also set `scene.builtin`, and "About rast" the text `about`.
+    let typed = query.trim().to_lowercase();
+    let begins_so = |entry: &Entry| {
+        entry.kind == Kind::Action
+            && typed.contains(' ')
+            && entry.text.to_lowercase().starts_with(&typed)
+    };
     let (mut whole, rest): (Vec<_>, Vec<_>) = found
         .into_iter()
-        .partition(|(_, entry)| !query.trim().is_empty() && entry.is_called(query));
+        .partition(|(_, entry)| !typed.is_empty() && (entry.is_called(query) || begins_so(entry)));
     whole.sort_by_key(|(_, entry)| {
         let is_text = entry.text.eq_ignore_ascii_case(query.trim());
         (!is_text, by_name(entry))
@@ -201,7 +207,7 @@ mod tests {
     fn probe(path: &str, value: &str) -> Result<(), String> {
         match value.parse::<f64>() {
             Ok(number) if number <= 1.0 && path != "facet.pattern" => Ok(()),
-            Ok(number) => Err(format!("{path} {number} lies outside 0..=1")),
+            Ok(number) => Err(format!("{path} takes 0 to 1, not {number}")),
             Err(_) if value == "sweep" && path == "facet.pattern" => Ok(()),
             Err(_) if path == "accuracy.depth" => Ok(()),
             Err(_) => Err(format!("{path} must be a number")),
@@ -251,9 +257,9 @@ mod tests {
         let first = rank(&entries(), "facet.amount 7", probe).swap_remove(0);
         assert_eq!(
             first.choice,
-            Choice::Refuse("facet.amount 7 lies outside 0..=1".into())
+            Choice::Refuse("facet.amount takes 0 to 1, not 7".into())
         );
-        assert_eq!(first.detail, "facet.amount 7 lies outside 0..=1");
+        assert_eq!(first.detail, "facet.amount takes 0 to 1, not 7");
     }
 
     #[test]

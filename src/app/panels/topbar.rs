@@ -403,6 +403,8 @@ fn pins_ui(ui: &mut Ui, state: &State) {
     let (of_file, own): (Vec<&str>, Vec<&str>) = words.split(' ').partition(is_filed);
     let text = match (of_file.len(), own.len()) {
         _ if words.is_empty() => return,
+        // In a narrow window the name needs the room more; the section Accuracy has them too.
+        _ if ui.available_width() < 150.0 => return,
         (0, 1) | (1, 0) => words.clone(),
         // The hint says by whom.
         (file, own) if is_narrow(ui) => format!("{} pinned", file + own),

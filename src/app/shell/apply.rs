@@ -141,7 +141,7 @@ pub fn paste(app: &mut App, text: &str) {
         .as_ref()
         .map(|(path, _)| path.clone());
     let row = state.clipboard.paste_into.take().or(hovered);
-    let is_preset = text.trim_start().starts_with("rasterlab1:");
+    let is_preset = preset_file::is_preset_text(text);
     if preset_file::is_effect_text(text) {
         return library::paste_effect(app, text);
     }

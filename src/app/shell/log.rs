@@ -59,7 +59,7 @@ const MAX_TOASTS: usize = 3;
 
 /// Seconds for which a toast is shown.
 const TOAST_S: f64 = 4.0;
-const ERROR_TOAST_S: f64 = 8.0;
+const LONG_TOAST_S: f64 = 8.0;
 
 /// The messages of this run.
 #[derive(Clone, Debug, Default)]
@@ -115,13 +115,18 @@ impl Log {
     /// Logs a message and shows its first line as a toast from `now_s` on.
     pub fn notify(&mut self, level: Level, text: impl Into<String>, now_s: f64) {
         let text = with_own_paths(text.into());
-        let shown = first_line(&text);
+        self.toast(level, &text, now_s);
+        self.add(level, text);
+    }
+
+    /// Shows the first line of a message that is in the log already.
+    pub fn toast(&mut self, level: Level, text: &str, now_s: f64) {
+        let shown = first_line(text);
         self.toasts
             .retain(|toast| toast.text != shown && toast.until_s > now_s);
-        let stay_s = if level == Level::Error {
-            ERROR_TOAST_S
-        } else {
-            TOAST_S
+        let stay_s = match level {
+            Level::Info => TOAST_S,
+            Level::Warning | Level::Error => LONG_TOAST_S,
         };
         self.toasts.push(Toast {
             level,
@@ -130,7 +135,6 @@ impl Log {
         });
         self.toasts
             .drain(..self.toasts.len().saturating_sub(MAX_TOASTS));
-        self.add(level, text);
     }
 
     pub fn entries(&self) -> impl ExactSizeIterator<Item = &Entry> {

@@ -7,6 +7,7 @@ use egui::{self, Button, ComboBox, DragValue, Grid, Response, TextEdit, Ui, emat
 
 use super::{
     icons::{Icon, icon_button},
+    numbers::parse_quotient,
     theme,
 };
 
@@ -102,7 +103,7 @@ pub fn menu_ui<T: PartialEq, W: Into<egui::WidgetText>, H: Into<String>>(
     (taken, shown.response.accessible_name(name))
 }
 
-/// A number called `name` with its unit: changed by a drag, or typed.
+/// A number called `name` with its unit: changed by a drag, or typed, also as `30000/1001`.
 pub fn number_ui<N: Numeric>(
     ui: &mut Ui,
     name: &str,
@@ -111,10 +112,17 @@ pub fn number_ui<N: Numeric>(
     (speed, unit): (f64, &str),
 ) -> Response {
     let decimals = if N::INTEGRAL { 0 } else { 3 };
+    let before = value.to_f64();
     let drag = DragValue::new(value)
         .range(range)
         .speed(speed)
         .max_decimals(decimals)
+        .update_while_editing(false)
+        .custom_parser(move |text| {
+            // What is shown is rounded; to leave it alone changes nothing.
+            let is_shown = |number: f64| (number - before).abs() < 0.5 * 0.1f64.powi(3);
+            parse_quotient(text).map(|number| if is_shown(number) { before } else { number })
+        })
         .suffix(unit);
     ui.add(drag).accessible_name(name)
 }

@@ -141,6 +141,13 @@ fn fixed_text(number: f64, decimals: usize) -> String {
     }
 }
 
+/// A number that was typed, or the quotient of two.
+pub fn parse_quotient(text: &str) -> Option<f64> {
+    let (number, by) = text.split_once('/').unwrap_or((text, "1"));
+    let quotient = parse_number(number, "")? / parse_number(by, "")?;
+    quotient.is_finite().then_some(quotient)
+}
+
 /// The number that was typed, perhaps with its unit.
 fn parse_number(text: &str, unit: &str) -> Option<f64> {
     let text = text

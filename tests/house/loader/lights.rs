@@ -123,7 +123,7 @@ fn what_is_left_out_or_too_strong_is_one_note() {
             lamp,
             "/nodes/1/translation [0.5,0.5,8]",
             1,
-            "its lights are some 3e2 times as strong as what a picture holds; studio.lights = 4e-3 dims them, as in the plain look",
+            "its lights are about 300 times as strong as what a picture holds; studio.lights = 0.004 dims them, as in the plain look",
         ),
         (
             r#"{"type":"directional"}"#,

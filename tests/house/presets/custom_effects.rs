@@ -26,7 +26,7 @@ fn a_value_outside_the_range_of_a_file_is_refused_with_its_line() {
     assert!(
         error.contains("mine.toml:3")
             && error.contains("effects.ink.amount")
-            && error.contains("0..=1"),
+            && error.contains("takes 0 to 1, not 7"),
         "{error}"
     );
 }

@@ -251,7 +251,8 @@ fn a_length_that_its_range_does_not_allow_is_kept_inside_and_named() {
     let (fitted, warnings) = preset.fitted(&fit);
     assert_eq!(warnings.len(), 2, "{warnings:?}");
     assert!(
-        warnings[0].starts_with("explode.amount_m: ") && warnings[0].ends_with("-1e3..=1e3"),
+        warnings[0].starts_with("explode.amount_m: ")
+            && warnings[0].ends_with("kept within -1000 to 1000"),
         "{warnings:?}"
     );
     assert!(warnings[1].starts_with("fog.level_m: "), "{warnings:?}");

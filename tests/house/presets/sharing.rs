@@ -21,6 +21,23 @@ fn a_shared_line_gives_the_preset_back() {
 }
 
 #[test]
+fn the_text_of_a_file_is_pasted_as_it_is() {
+    let text = "# Tinte\n[effects.facet] # half\namount = 0.25\n";
+    assert!(preset_file::is_preset_text(text));
+    let pasted = preset_file::from_line(text).unwrap();
+    assert_eq!(bits(&pasted.preset), bits(&parse(text).preset));
+    let values = [
+        "[0.1, 0.2, 0.3, 1.0]",
+        "[\"ink\", \"lambert\"]",
+        "0.5",
+        "amount",
+    ];
+    for value in values {
+        assert!(!preset_file::is_preset_text(value), "{value}");
+    }
+}
+
+#[test]
 fn hostile_shared_lines_are_refused() {
     use std::io::Write as _;
     let pack = |bytes: &[u8]| {

@@ -50,7 +50,7 @@ impl<'m> Lowering<'m, '_> {
 
     /// The number that a literal means.
     fn decimal(&self, value: f32, source: Option<std::ops::Range<usize>>) -> f64 {
-        if self.options.precision == Precision::Single {
+        if self.options.precision != Precision::Double {
             return f64::from(value);
         }
         // The text may also be an expression that naga computed, or the name of a constant.
@@ -99,7 +99,7 @@ impl<'m> Lowering<'m, '_> {
                     ScalarKind::Uint => Word::from_u32(value as u32),
                     ScalarKind::Float | ScalarKind::AbstractFloat => match self.options.precision {
                         Precision::Double => Word::from_f64(value),
-                        Precision::Single => Word::from_f64(f64::from(value as f32)),
+                        _ => Word::from_f64(f64::from(value as f32)),
                     },
                 };
                 Words::one(self.constant(word)?)

@@ -20,7 +20,7 @@ pub use self::{
     catalog::{Catalog, CustomEffect},
     duplicate::duplicate,
     error::{EffectError, Place},
-    evaluated::{EvaluatedError, evaluated},
+    evaluated::{EvaluatedError, evaluated, evaluated_in},
     precision::{
         ErrorsOfEffect, LargestError, Place as ErrorPlace, Quantity, has_f32_error, overreaching,
         precision,

@@ -52,7 +52,7 @@ impl Schedule {
         for (name, time_s) in [("from", from_s), ("to", to_s)] {
             if !(-MAX_TIME_S..=MAX_TIME_S).contains(&time_s) {
                 return Err(FilmError::Times(format!(
-                    "{dashes}{name} {time_s} lies outside -1e9..=1e9"
+                    "{dashes}{name} takes -1e9 to 1e9, not {time_s}"
                 )));
             }
         }
@@ -63,7 +63,7 @@ impl Schedule {
         }
         if !(0.001..=MAX_FPS).contains(&fps) {
             return Err(FilmError::Times(format!(
-                "{dashes}fps {fps} lies outside 0.001..=1000"
+                "{dashes}fps takes 0.001 to 1000, not {fps}"
             )));
         }
         let step_s = clock.speed / fps;

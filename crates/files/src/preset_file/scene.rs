@@ -19,7 +19,7 @@ use crate::{
 pub enum SceneError {
     #[error(transparent)]
     Builtin(#[from] builtin::BuiltinError),
-    #[error("the model {path} of the preset does not exist")]
+    #[error("the model {path} does not exist")]
     Absent { path: String },
     #[error(transparent)]
     Model(#[from] gltf::LoadError),
@@ -106,7 +106,7 @@ fn load_source(
             if up != UpAxis::Y {
                 let up = up.word();
                 scene.notes.push(format!(
-                    "its {up} is taken to be up, guessed from its format, its names and how it stands; scene.up says otherwise"
+                    "its {up} axis is taken to be up, guessed from its format, its names and how it stands; set scene.up if another is"
                 ));
             }
             Ok(scene.turned_up(up).counted())

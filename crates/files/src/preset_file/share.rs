@@ -31,20 +31,35 @@ pub fn to_line(preset_file: &PresetFile) -> String {
     )
 }
 
-/// Reads a pasted line, or the link of a page that carries one; white space from a mail or chat is
-/// forgiven. A model outside of the current folder is not its scene before [`PresetFile::with_outside_model`].
+/// Is a text that someone pastes meant as a preset: a shared line, or the text of a preset's file?
+pub fn is_preset_text(text: &str) -> bool {
+    text.trim_start().starts_with(PREFIX) || is_file_text(text)
+}
+
+/// Has it a key or a heading as files of presets do?
+fn is_file_text(text: &str) -> bool {
+    text.lines().map(str::trim_start).any(|line| {
+        let heading = line.strip_prefix('[').and_then(|name| name.chars().next());
+        line.starts_with("schema") || heading.is_some_and(|c| c.is_ascii_lowercase())
+    })
+}
+
+/// Reads a pasted line, the link of a page that carries one, or the text of a preset's file; white space from a mail or
+/// chat is forgiven. A model outside of the current folder is not its scene before [`PresetFile::with_outside_model`].
 pub fn from_line(line: &str) -> Result<PresetFile, PresetError> {
     let not_ours = |reason: &str| PresetError::NotOurs {
         what: "the pasted text".into(),
         reason: reason.into(),
     };
+    if is_file_text(line) {
+        return Ok(parse_file(line, PASTED, "the pasted text")?.held_to_folder());
+    }
     // A link to a page carries the line after its address, and what its picture is after the line.
     let line = line.rsplit_once('#').map_or(line, |(_, line)| line);
     let line = line.split_once(';').map_or(line, |(line, _)| line);
-    let packed = line
-        .trim()
-        .strip_prefix(PREFIX)
-        .ok_or_else(|| not_ours("it does not begin with rasterlab1:"))?;
+    let packed = line.trim().strip_prefix(PREFIX).ok_or_else(|| {
+        not_ours("it neither begins with rasterlab1: nor is the text of a preset")
+    })?;
     let packed: String = packed
         .chars()
         .filter(|c| !c.is_whitespace())

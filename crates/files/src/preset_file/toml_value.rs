@@ -332,7 +332,7 @@ mod tests {
         assert!(read_number(&param, "0.1").is_ok() && read_number(&param, "0.7").is_ok());
         assert_eq!(
             read_number(&param, "0.71").unwrap_err(),
-            "0.71 lies outside 0.1..=0.7"
+            "takes 0.1 to 0.7, not 0.71"
         );
     }
 }

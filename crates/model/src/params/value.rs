@@ -230,7 +230,7 @@ impl Value {
 /// A value that a parameter refuses; completes a sentence that begins with the parameter's name.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ValueError {
-    #[error("{} lies outside {}..={}", format_number(*value), format_number(*low), format_number(*high))]
+    #[error("takes {} to {}, not {}", format_number(*low), format_number(*high), format_number(*value))]
     Range { value: f64, low: f64, high: f64 },
     #[error("{} must be a whole number", format_number(*.0))]
     Whole(f64),
@@ -247,10 +247,10 @@ pub enum ValueError {
     Rule(String),
 }
 
-/// A number as text: plain or with an exponent, whichever is shorter.
+/// A number as text: plain, or with an exponent where that is shorter and plain is long.
 pub fn format_number(number: f64) -> String {
     let (plain, exponent) = (format!("{number}"), format!("{number:e}"));
-    if exponent.len() < plain.len() {
+    if plain.trim_start_matches('-').len() > 6 && exponent.len() < plain.len() {
         exponent
     } else {
         plain

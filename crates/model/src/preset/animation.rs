@@ -88,7 +88,7 @@ pub struct Keyframe {
 pub enum KeyframeError {
     #[error("value {0}")]
     Value(#[from] ValueError),
-    #[error("time_s {} lies outside -1e9..=1e9", format_number(*.0))]
+    #[error("time_s takes -1e9 to 1e9, not {}", format_number(*.0))]
     Time(f64),
     #[error("there is already a keyframe at time_s {0}")]
     Taken(f64),

@@ -181,7 +181,7 @@ fn clamped(effect: &str, field: &Field) -> String {
         ""
     };
     format!(
-        "{effect}.{}: fitted to this scene it would leave its range; {each}was kept inside {low}..={high}",
+        "{effect}.{}: fitted to this scene it would leave its range; {each}was kept within {low} to {high}",
         field.name
     )
 }

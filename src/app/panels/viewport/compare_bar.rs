@@ -30,7 +30,7 @@ const BAR: f32 = 30.0;
 /// From the lower edge of the picture up to the bar and to the labels, points: above the plates of
 /// both sides.
 const UP_TO_BAR: f32 = 106.0;
-const UP_TO_LABELS: f32 = 114.0;
+pub const UP_TO_LABELS: f32 = 114.0;
 
 /// A label in the picture on each side, with the names of A and B.
 pub fn labels_ui(ui: &Ui, [name, name_b]: [&str; 2], sides: [Rect; 2], is_difference: bool) {

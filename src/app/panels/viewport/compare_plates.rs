@@ -1,8 +1,11 @@
 //! The plates of a comparison: below each side what it shows, its time and its error.
 
-use egui::{self, Color32, Rect, RichText, Ui, pos2, vec2};
+use egui::{self, Align, Color32, Layout, Rect, RichText, Ui, pos2, vec2};
 
-use super::compare::{Compare, Mode};
+use super::{
+    compare::{Compare, Mode},
+    compare_bar::UP_TO_LABELS,
+};
 use crate::{
     app::{
         editing::apply::keyframe,
@@ -14,6 +17,7 @@ use crate::{
         shell::{command::Commands, state::State},
         widgets::{
             icons::{Icon, icon_button},
+            panel::at_right,
             theme,
         },
     },
@@ -22,8 +26,11 @@ use crate::{
 
 /// Size of a plate, points.
 const PLATE: egui::Vec2 = vec2(312.0, 54.0);
+/// Height of a label with a gap, points.
+const LABEL: f32 = 26.0;
 
-/// Shows the plates in `rect`. Returns what they do not cover of B's side.
+/// Shows the plates in `rect`. Returns what neither they nor the bar and the labels above them cover
+/// of B's side.
 pub fn plates_ui(
     ui: &mut Ui,
     compare: &mut Compare,
@@ -53,7 +60,7 @@ pub fn plates_ui(
     }
     Rect::from_min_max(
         pos2(left - 12.0, rect.top()),
-        pos2(rect.right(), corner.y + 4.0),
+        pos2(rect.right(), rect.bottom() - UP_TO_LABELS - LABEL),
     )
 }
 
@@ -156,9 +163,13 @@ fn plate(
             ui.set_min_width(ui.available_width());
             ui.spacing_mut().item_spacing.y = 2.0;
             ui.horizontal(|ui| {
-                ui.add(egui::Label::new(theme::strong(title).strong()).truncate())
-                    .on_hover_text(doc);
-                buttons(ui);
+                at_right(ui, |ui| {
+                    buttons(ui);
+                    ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                        ui.add(egui::Label::new(theme::strong(title).strong()).truncate())
+                            .on_hover_text(doc);
+                    });
+                });
             });
             ui.horizontal(|ui| {
                 ui.spacing_mut().item_spacing.x = 6.0;

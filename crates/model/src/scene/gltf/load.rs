@@ -153,8 +153,10 @@ fn read_model(
     if let Some(times) = scene.glare() {
         let dimmed = dimmed(times);
         notes.add(|| {
+            // One digit: 20, 50000.
+            let times: f64 = format!("{times:.0e}").parse().unwrap_or(times);
             format!(
-                "its lights are some {times:.0e} times as strong as what a picture holds; studio.lights = {dimmed:e} dims them, as in the plain look"
+                "its lights are about {times} times as strong as what a picture holds; studio.lights = {dimmed} dims them, as in the plain look"
             )
         });
     }
