@@ -347,12 +347,13 @@ const TILE_LIST: Feature = Feature {
 
 const SHAPE: Feature = Feature {
     label: |key| match key.samples.shape {
-        Shape::Triangles => String::new(),
+        Shape::Triangles => word_if(key.samples.has_points, "points"),
         Shape::Boxes => "shape=boxes".into(),
         Shape::Points => "shape=points".into(),
     },
     constants: &[
         ("SHAPE", |key, _| (key.samples.shape as u32).into()),
+        ("HAS_POINTS", |key, _| flag(key.samples.has_points)),
         ("INVOCATIONS_PER_TRIANGLE", |key, _| {
             key.work.invocations_per_triangle.into()
         }),
@@ -462,6 +463,12 @@ const SAMPLE_EFFECTS: Feature = Feature {
         }),
         ("sample_test", |key, _| {
             step_if(key.has_discs(), "particle_disc")
+        }),
+        ("sample_test", |key, _| {
+            step_if(
+                key.samples.has_points && key.samples.shape == Shape::Triangles,
+                "point",
+            )
         }),
         ("sample_test", |key, _| {
             step_if(key.samples.has_mask, "alpha_mask")
