@@ -1,4 +1,4 @@
-// raster_points: the corners of every triangle that is shown, as discs. Several invocations divide the rows of a triangle's discs among
+// raster_points: the corners of every triangle that is shown, and points, as discs. Several invocations divide the rows of a triangle's discs among
 // them. A triangle that would have to be clipped shows no discs.
 //@ use lib/frame
 //@ use lib/fixed

@@ -225,21 +225,8 @@ const REFUSED: &[(&str, &str)] = &[
     ),
     ("OBJ/testline.obj", "no faces; export it with faces"),
     ("OBJ/testpoints.obj", "no faces; export it with faces"),
-    (
-        "PLY/points.ply",
-        "it has 4 points and no faces; export it with faces",
-    ),
     ("invalid/empty.obj", "it is empty"),
     ("invalid/empty.ply", "it is empty"),
-    // Without the line of its faces.
-    (
-        "PLY/issue623.ply",
-        "it has 24 points and no faces; export it with faces",
-    ),
-    (
-        "PLY/pond.0.ply",
-        "it has 70048 points and no faces; export it with faces",
-    ),
 ];
 
 #[test]

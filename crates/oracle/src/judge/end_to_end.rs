@@ -238,9 +238,11 @@ impl EndToEnd<'_> {
             own
         });
         let drawn = match self.shot.stack.shape() {
-            Shape::Triangles if shown.is_some() => Drawn::Point(shown.unwrap_or(Shown::Pixel)),
-            Shape::Triangles if self.own.particle_discs.contains(&id) => Drawn::Disc,
-            Shape::Triangles => Drawn::Inside,
+            Shape::Triangles => match shown {
+                Some(shown) => Drawn::Point(shown),
+                None if self.own.particle_discs.contains(&id) => Drawn::Disc,
+                None => Drawn::Inside,
+            },
             Shape::Boxes => Drawn::Box,
             Shape::Points => Drawn::Points(self.shot.stack.point_radius().into()),
         };

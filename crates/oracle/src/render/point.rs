@@ -1,5 +1,5 @@
 //! Points: each is drawn as a triangle about it, of which its disc is shown, or where that is too small
-//! to hold a sample wherever it lies, the pixel in which the point lies (`docs/exactness.md` §3).
+//! to hold a sample wherever it lies, the pixel in which the point lies (`docs/exactness.md` §2).
 
 use crate::{
     frame::{SnappedVertex, vertex_flags},
@@ -47,7 +47,7 @@ impl Shown {
 
 /// Half the diagonal of a pixel in sub-pixel units, rounded up: a disc of this radius holds a sample.
 fn least(subpixel_bits: u32) -> i64 {
-    (182i64 << subpixel_bits).div_ceil(256)
+    ((182 << subpixel_bits) + 255) >> 8
 }
 
 /// The corners of the triangle about a point with this record, counterclockwise on the screen unless
@@ -67,4 +67,38 @@ pub fn corners(record: &SnappedVertex, draw: &Draw, subpixel_bits: u32) -> [Snap
         flags,
         ..*record
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_point_shows_wherever_it_lies_and_only_inside_the_triangle_about_it() {
+        for bits in [4, 8, 12] {
+            let unit = 1i64 << bits;
+            let smallest = Shown::Disc(least(bits));
+            for k in 0..256 {
+                let point = [k * unit / 256, (k * 37 % 256) * unit / 256];
+                let samples = |shown: Shown| {
+                    (-2..3)
+                        .flat_map(|y| (-2..3).map(move |x| [x, y]))
+                        .filter(|at| shown.covers(point, at.map(|k| k * unit + unit / 2), unit))
+                        .count()
+                };
+                assert_eq!(samples(Shown::Pixel), 1, "{bits} bits, {point:?}");
+                assert!(samples(smallest) >= 1, "{bits} bits, {point:?}");
+            }
+        }
+        // Of a side of the triangle, the point is farther away than the disc is wide.
+        for inner in [183i64, 500, 8193, 131_073] {
+            let half = inner * 1774 / 1024 + 1;
+            let doubled_area = 2 * half * inner;
+            let squared_side = half * half + 9 * inner * inner;
+            assert!(
+                doubled_area.pow(2) >= inner.pow(2) * squared_side,
+                "{inner}"
+            );
+        }
+    }
 }

@@ -104,15 +104,18 @@ pub fn load(
             }
         }
     }
-    reader.loose_points()?;
-    let Reader {
-        builder, findings, ..
-    } = reader;
-    findings.tell(&notes);
     let has_faces = header
         .elements
         .iter()
         .any(|element| element.count > 0 && ["face", "tristrips"].contains(&element.name.as_str()));
+    // Where all faces are broken, that is said.
+    if !has_faces || !reader.builder.parts.is_empty() {
+        reader.loose_points()?;
+    }
+    let Reader {
+        builder, findings, ..
+    } = reader;
+    findings.tell(&notes);
     builder.finish(notes, has_faces, || {
         "it has no points and no faces".to_owned()
     })
