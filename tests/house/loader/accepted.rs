@@ -235,10 +235,7 @@ fn what_is_left_out_is_noted() {
     model.primitive(json!({ "attributes": { "POSITION": 0 }, "mode": 1 }));
     let scene = model.scene();
     assert_eq!(scene.primitives.len(), 1);
-    assert_noted(
-        &scene,
-        "mesh \"X\" primitive 1 is skipped: lines",
-    );
+    assert_noted(&scene, "mesh \"X\" primitive 1 is skipped: lines");
     assert_noted(
         &scene,
         "the extension \"KHR_materials_clearcoat\" is not supported and is ignored",

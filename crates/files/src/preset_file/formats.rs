@@ -61,6 +61,16 @@ pub const MODEL_FORMATS: &[ModelFormat] = &[
         beside: &["png", "jpg", "jpeg", "webp"],
         reader: Reader::Mesh(mesh_files::load_ply),
     },
+    ModelFormat {
+        extension: "xyz",
+        beside: &[],
+        reader: Reader::Mesh(mesh_files::load_xyz),
+    },
+    ModelFormat {
+        extension: "las",
+        beside: &[],
+        reader: Reader::Mesh(mesh_files::load_las),
+    },
 ];
 
 impl ModelFormat {

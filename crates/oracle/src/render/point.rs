@@ -60,7 +60,7 @@ pub fn corners(record: &SnappedVertex, draw: &Draw, subpixel_bits: u32) -> [Snap
     let half = inner * 1774 / 1024 + 1;
     let aside = if draw.mirrored { -half } else { half };
     let is_out = record.x.abs().max(record.y.abs()) > GUARD_BAND - 2 * inner;
-    let flags = record.flags | if is_out { vertex_flags::LEFT } else { 0 };
+    let flags = record.flags | if is_out { vertex_flags::GUARD[0] } else { 0 };
     [(-aside, inner), (aside, inner), (0, -2 * inner)].map(|(x, y)| SnappedVertex {
         x: record.x + x,
         y: record.y + y,
