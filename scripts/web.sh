@@ -34,6 +34,10 @@ done
 cp crates/page/web/* dist/
 cp presets/*.toml dist/presets/
 cp tests/snapshots/*.png dist/goldens/
+# Ids and names of the gallery.
+for preset in presets/*.toml; do
+    sed -n "s/^name = \\(\".*\"\\)\$/[\"$(basename "$preset" .toml)\", \\1]/p;" "$preset" | head -n 1
+done | paste -s -d , | sed 's/.*/[&]/' > dist/gallery.json
 
 if [ "${1:-}" = --serve ]; then
     exec python3 -m http.server --bind localhost --directory dist 8000

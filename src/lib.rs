@@ -23,6 +23,8 @@ pub mod app;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod cli;
 
+#[cfg_attr(target_arch = "wasm32", allow(dead_code))]
+mod contact_sheet;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod golden;
 pub mod link;

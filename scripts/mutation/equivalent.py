@@ -1,9 +1,10 @@
 """The list of mutants that change nothing that may be seen, each with the reason: scripts/mutants-equivalent.txt.
 
     PART: BEFORE => AFTER ## REASON
+    PART: BEFORE => * ## REASON
     PART: => ## REASON
 
-on one line each. The second form is of a part that no command links on some adapters: it counts where one does. PART is a file, or a section of one (`variants/coverage/fixed`); BEFORE and AFTER are the line without and with the
+on one line each. The second form is of every change of a line, the third of a part that no command links on some adapters: it counts where one does. PART is a file, or a section of one (`variants/coverage/fixed`); BEFORE and AFTER are the line without and with the
 change, indentation left out; AFTER is empty where the line is dropped. An entry is found by these texts, not by a line number, so it outlives changes elsewhere in the file.
 """
 
@@ -33,7 +34,8 @@ def parse(text):
 
 
 def reason(entries, mutant):
-    return entries.get((mutant["part"], mutant["before"].strip(), mutant["after"].strip()))
+    part, before = mutant["part"], mutant["before"].strip()
+    return entries.get((part, before, mutant["after"].strip())) or entries.get((part, before, "*"))
 
 
 def elsewhere(entries, part):

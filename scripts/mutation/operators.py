@@ -22,7 +22,10 @@ CALLS = {
 }  # fmt: skip
 
 # Calls whose result does not depend on the order of the first two arguments.
-SYMMETRIC = {"min", "max", "dot", "distance", "select", "all", "any", "fixed_umul", "fixed_add", "fixed_mul"}
+SYMMETRIC = {
+    "min", "max", "dot", "distance", "select", "all", "any", "fixed_umul", "fixed_add", "fixed_mul", "softfloat_add", "softfloat_multiply",
+    "lattice_pair",
+}  # fmt: skip
 
 
 def infix(words, code):
@@ -76,9 +79,10 @@ def select_arms(code):
             yield from _swapped(code, spans[0], spans[1])
 
 
-# Functions of the language whose result depends on the order of their arguments; equal numbers mark arguments of one type.
+# Functions of the language whose result depends on the order of their arguments; equal numbers mark arguments of one type. The first two of
+# clamp(e, low, high), which is min(max(e, low), high), may be exchanged.
 ORDERED = {
-    "mix": (0, 0, 1), "clamp": (0, 0, 0), "cross": (0, 0), "step": (0, 0), "smoothstep": (0, 0, 0), "pow": (0, 0), "atan2": (0, 0), "reflect": (0, 0),
+    "mix": (0, 0, 1), "clamp": (0, 1, 1), "cross": (0, 0), "step": (0, 0), "smoothstep": (0, 0, 0), "pow": (0, 0), "atan2": (0, 0), "reflect": (0, 0),
 }  # fmt: skip
 
 

@@ -184,6 +184,8 @@ class Equivalents(unittest.TestCase):
         self.assertEqual(equivalent.reason(entries, {**self.MUTANT, "line": 99}), "a has no bits of b")
         self.assertIsNone(equivalent.reason(entries, {**self.MUTANT, "part": "lib/b"}))
         self.assertIsNone(equivalent.reason(entries, {**self.MUTANT, "after": "    let x = a ^ b; // c"}))
+        every = equivalent.parse(equivalent.line({**self.MUTANT, "after": "*"}, "idle"))
+        self.assertEqual(equivalent.reason(every, self.MUTANT), "idle")
 
     def test_a_dropped_line_has_an_empty_text(self):
         dropped = {**self.MUTANT, "after": ""}
@@ -333,7 +335,8 @@ class Repository(unittest.TestCase):
         with open(os.path.join(self.root, "scripts", "mutants-equivalent.txt"), encoding="utf-8") as file:
             entries = equivalent.parse(file.read())
         self.assertEqual(equivalent.stale(entries, choose.parts(texts)), [])
-        possible = {key(mutant) for found in choose.every(texts).values() for mutant in found}
+        every = [key(mutant) for found in choose.every(texts).values() for mutant in found]
+        possible = {*every, *((part, before, "*") for part, before, _ in every)}
         self.assertEqual([entry for entry in entries if entry[1] and entry not in possible], [])
 
     def test_every_planted_mistake_replaces_text_that_the_shaders_have_once(self):

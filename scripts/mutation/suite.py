@@ -83,8 +83,8 @@ def probes(root, fuzz_count, fuzz_seed, leave_out=(), cases=()):
 
 
 def commands(relevant, stem, seconds):
-    """Groups of probes, each one command, for a mutant of the file `stem`: first those that are named after the file, then the cheapest
-    of every step, then the others; what takes less time comes first."""
+    """Groups of probes, each one command, for a mutant of the file `stem`: first those that are named after the file, then the others;
+    what takes less time comes first."""
 
     def cost(probe):
         return seconds.get(probe.name, 0.0)
@@ -98,7 +98,7 @@ def commands(relevant, stem, seconds):
             named = [probe for probe in same if any(stem in os.path.basename(word) for word in probe.inputs)]
             others = [probe for probe in same if probe not in named]
             rest = [others[begin : begin + REST] for begin in range(10, len(others), REST)]
-            ranked += enumerate((named[:2], named[2:], others[:2], others[2:10], *rest))
+            ranked += [(0, named[:2]), (0, named[2:]), (1, others[:2]), (1, others[2:10]), *((1, some) for some in rest)]
     ranked = [(rank, sum(map(cost, group)), group) for rank, group in ranked if group]
     return [group for _, _, group in sorted(ranked, key=lambda one: one[:2])]
 

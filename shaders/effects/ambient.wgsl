@@ -19,12 +19,12 @@ struct Ambient {
 
 const AMBIENT_TAPS = 20;
 
-// How much is hidden from each pixel, in red, and its depth, in alpha.
+// How much is hidden from each pixel, in red, and its reversed depth, in alpha.
 fn ambient_find(at: ImageAt, p: Ambient) -> vec4f {
     let here = image_at(at.x, at.y);
     let here_m = image_depth_m(at.x, at.y);
-    if here.x == IMAGE_NO_TRIANGLE { return vec4f(0.0, 0.0, 0.0, here_m); }
     let depth = bitcast<f32>(here.y);
+    if here.x == IMAGE_NO_TRIANGLE { return vec4f(0.0); }
     // On a plane, depths change evenly across the picture.
     let slope = vec2f(ambient_slope(at, depth, vec2i(1, 0)), ambient_slope(at, depth, vec2i(0, 1)));
     let radius_m = ambient_radius_m(here_m, p);
@@ -35,12 +35,12 @@ fn ambient_find(at: ImageAt, p: Ambient) -> vec4f {
         let turns = first + f32(i) * 0.6180339887498949;
         let away = reach_px * (f32(i) + 0.5) / f32(AMBIENT_TAPS);
         let step = vec2i(floor(away * vec2f(cosine_turns(turns), sine_turns(turns)) + 0.5));
-        let plane_m = image_meters(depth + dot(slope, vec2f(step)));
+        let seen = bitcast<f32>(image_at(at.x + step.x, at.y + step.y).y);
         // How far what is seen there stands out from the plane of this pixel.
-        let height = (plane_m - image_depth_m(at.x + step.x, at.y + step.y)) / radius_m;
+        let height = image_meters_apart(seen, (depth - seen) + dot(slope, vec2f(step))) / radius_m;
         hidden += clamp(4.0 * height - 0.1, 0.0, 1.0) * clamp(2.0 - height, 0.0, 1.0);
     }
-    return vec4f(hidden / f32(AMBIENT_TAPS), 0.0, 0.0, here_m);
+    return vec4f(hidden / f32(AMBIENT_TAPS), 0.0, 0.0, depth);
 }
 
 fn ambient_across(at: ImageAt, p: Ambient) -> vec4f {
@@ -68,13 +68,13 @@ fn ambient_slope(at: ImageAt, depth: f32, step: vec2i) -> f32 {
 // Mean along a direction of pixels at about the same depth.
 fn ambient_mean(at: ImageAt, along: vec2i, p: Ambient) -> vec4f {
     let here = image_last(at.x, at.y);
-    let radius_m = ambient_radius_m(here.a, p);
+    let radius_m = ambient_radius_m(image_meters(here.a), p);
     var sum = 0.0;
     var weights = 0.0;
     let reach = i32(p.soft_px);
     for (var i = -reach; i <= reach; i += 1) {
         let there = image_last(at.x + i * along.x, at.y + i * along.y);
-        let apart = (there.a - here.a) / radius_m;
+        let apart = image_meters_apart(here.a, there.a - here.a) / radius_m;
         let weight = 1.0 / (1.0 + 16.0 * apart * apart);
         sum += weight * there.r;
         weights += weight;

@@ -52,6 +52,13 @@ fn explode(vertex: Vertex, p: Explode) -> Vertex {
     return v;
 }
 
+// No corner is farther from its triangle's center than the model is wide, and a turn takes it at most twice as far.
+@reach
+fn explode_reach(radius_m: f32, p: Explode) -> f32 {
+    let turned = select(2.0, 0.0, p.spin_turns == 0.0);
+    return abs(p.amount_m) + (turned + p.shrink) * 2.0 * radius_m;
+}
+
 // What a turn about the unit axis `n` adds to `r` (Rodrigues).
 fn explode_turn(n: vec3f, r: vec3f, sine: f32, versine: f32) -> vec3f {
     let across = cross(n, r);

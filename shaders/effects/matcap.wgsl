@@ -1,4 +1,4 @@
-// Matcap: paints by the way a surface faces: a ball of clay, wax, jade or chrome. A ball of some material looks so under lamps that move with the eye.
+// Matcap: paints by the way a surface faces: a ball of clay, wax, jade or chrome. A ball of some material looks so under lights that move with the eye.
 //@ use lib/surface
 
 struct Matcap {
@@ -12,7 +12,7 @@ struct Matcap {
 
 // A ball that no surroundings are seen in.
 struct MatcapPaint {
-    dark: vec3f, // where the lamp does not reach
+    dark: vec3f, // where the light does not reach
     bright: vec3f, // where it meets the surface straight on
     rim: vec3f, // added where the surface turns away from the eye
     gloss: f32, // strength of the highlight
@@ -50,9 +50,9 @@ fn matcap_ball(ball: u32, facing: vec3f) -> vec3f {
 }
 
 fn matcap_painted(facing: vec3f, paint: MatcapPaint) -> vec3f {
-    let light = clamp(0.6 * matcap_lamp(facing) + 0.4, 0.0, 1.0);
+    let light = clamp(0.6 * matcap_light(facing) + 0.4, 0.0, 1.0);
     let away = 1.0 - clamp(facing.z, 0.0, 1.0);
-    // Half way between the lamp and the eye.
+    // Half way between the light and the eye.
     let near = clamp(dot(facing, vec3f(-0.2469, 0.3292, 0.9114)), 0.0, 1.0);
     let power_4 = near * near * near * near;
     let power_16 = power_4 * power_4 * power_4 * power_4;
@@ -61,15 +61,15 @@ fn matcap_painted(facing: vec3f, paint: MatcapPaint) -> vec3f {
     return mix(paint.dark, paint.bright, light * light) + paint.rim * (away * away) + vec3f(paint.gloss * highlight);
 }
 
-// A sky above a ground, and the lamp.
+// A sky above a ground, and the light.
 fn matcap_mirrored(facing: vec3f) -> vec3f {
     let seen = facing * (2.0 * facing.z) - vec3f(0.0, 0.0, 1.0);
     let sky = mix(vec3f(0.86, 0.92, 1.0), vec3f(0.13, 0.24, 0.46), smoothstep(0.0, 0.9, seen.y));
     let ground = mix(vec3f(0.035, 0.028, 0.03), vec3f(0.42, 0.34, 0.27), smoothstep(0.0, 0.9, -seen.y));
-    return mix(ground, sky, smoothstep(-0.08, 0.08, seen.y)) + vec3f(0.9 * smoothstep(0.86, 0.96, matcap_lamp(seen)));
+    return mix(ground, sky, smoothstep(-0.08, 0.08, seen.y)) + vec3f(0.9 * smoothstep(0.86, 0.96, matcap_light(seen)));
 }
 
-// The cosine of the angle between a direction and that to the main lamp.
-fn matcap_lamp(toward: vec3f) -> f32 {
+// The cosine of the angle between a direction and that to the main light.
+fn matcap_light(toward: vec3f) -> f32 {
     return dot(toward, vec3f(-0.45, 0.6, 0.6614));
 }

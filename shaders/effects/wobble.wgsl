@@ -30,6 +30,11 @@ fn wobble(vertex: Vertex, p: Wobble) -> Vertex {
     return v;
 }
 
+@reach
+fn wobble_reach(p: Wobble) -> f32 {
+    return p.amplitude_m;
+}
+
 // Direction of `v`; `otherwise` where it has none.
 fn wobble_unit(v: vec3f, otherwise: vec3f) -> vec3f {
     let largest = max(max(abs(v.x), abs(v.y)), abs(v.z));

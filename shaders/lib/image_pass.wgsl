@@ -82,6 +82,17 @@ fn image_meters(depth: f32) -> f32 {
     return min(frame.clip_from_world[3].z / max(depth, 1e-30), IMAGE_EMPTY_M);
 }
 
+// How many meters farther a pixel of reversed depth `depth + by` is than one of `depth`. No difference of distances is taken, so far from
+// the eye the result is as exact as `by`.
+fn image_meters_apart(depth: f32, by: f32) -> f32 {
+    let there_m = image_meters(depth + by);
+    if depth <= 0.0 || depth + by <= 0.0 { return there_m - image_meters(depth); }
+    // Along the viewing direction an orthographic depth changes by 1 from the far plane to the near one.
+    let per_meter = vec3f(frame.clip_from_world[0].z, frame.clip_from_world[1].z, frame.clip_from_world[2].z);
+    if !IS_PERSPECTIVE { return -by / length(per_meter); }
+    return -by * (there_m / depth);
+}
+
 // Side of a pixel at a depth, meters.
 fn image_pixel_size_m(depth_m: f32) -> f32 {
     return length(frame.ndc_y.xyz) * 2.0 / f32(frame.size.y) * select(1.0, depth_m, IS_PERSPECTIVE);

@@ -2,9 +2,9 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::{Args, CommandFactory as _, Parser, Subcommand, ValueEnum};
 
-use super::values::{fraction, frames, size, turntable};
+use super::values::{fraction, frames, rate, size, turntable};
 use crate::{
     effect_files::Hook,
     film::Turntable,
@@ -38,6 +38,7 @@ const LONG: &str = "An effects lab around a compute-shader rasterizer, judged by
 
 /// Flags that every command has.
 #[derive(Args, Debug, Default)]
+#[command(next_help_heading = "Options of every command")]
 pub struct Common {
     /// Part of an adapter's name, or cpu for the built-in oracle [env: RASTERLAB_ADAPTER]
     #[arg(long, global = true, value_name = "NAME")]
@@ -214,19 +215,7 @@ pub enum Command {
 impl Command {
     /// Does it draw or describe presets, so that `--preset` means something?
     pub fn takes_look(&self) -> bool {
-        matches!(
-            self,
-            Self::Render(_)
-                | Self::Sequence(_)
-                | Self::Verify(_)
-                | Self::Compare(_)
-                | Self::Explain(_)
-                | Self::Probe(_)
-                | Self::Parts(_)
-                | Self::Bench(_)
-                | Self::Link(_)
-                | Self::Page(_)
-        )
+        TAKES_LOOK.contains(&self.name())
     }
 
     pub fn name(&self) -> &'static str {
@@ -254,6 +243,27 @@ impl Command {
             Self::Man { .. } => "man",
         }
     }
+}
+
+/// The commands that draw or describe presets.
+pub const TAKES_LOOK: [&str; 11] = [
+    "render", "sequence", "sweep", "verify", "compare", "explain", "probe", "parts", "bench",
+    "link", "page",
+];
+
+/// The table of all commands and flags, where the help of a command does not list what it refuses.
+pub fn command() -> clap::Command {
+    let mut command =
+        Cli::command().mut_arg("log", |log| log.help_heading("Options of the window"));
+    command.build();
+    command.mut_subcommands(|subcommand| {
+        let refuses = !TAKES_LOOK.contains(&subcommand.get_name());
+        // In place: a built command knows its flags by their indices, which `mut_arg` would move.
+        subcommand.mut_args(|arg| match refuses && arg.get_id() == "preset" {
+            true => arg.hide(true),
+            false => arg,
+        })
+    })
 }
 
 #[derive(Args, Debug)]
@@ -398,8 +408,8 @@ pub struct Sequence {
     /// End time in seconds, which is not drawn; default: end of the preset's range
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     pub to: Option<f64>,
-    /// Frames per second
-    #[arg(long, value_name = "N", default_value_t = 30.0)]
+    /// Frames per second, e.g. 24 or 30000/1001
+    #[arg(long, value_name = "N", default_value = "30", value_parser = rate)]
     pub fps: f64,
     /// Frames A..B, B excluded; use it to split a job
     #[arg(long, value_name = "A..B", value_parser = frames)]

@@ -15,7 +15,8 @@ use crate::{
     },
     measure::{ErrorReport, Verdict},
     oracle,
-    preset::{Preset, Visibility},
+    params::legible_line,
+    preset::{NO_CAMERA, Preset, Visibility},
     preset_file::{self, PresetError, PresetFile, Provenance},
     scene::{Scene, draw::DrawError, view::View},
 };
@@ -203,20 +204,25 @@ impl Backend {
         }
     }
 
-    /// The picture with everything that a judge needs.
-    pub fn capture(&mut self, preset: &Preset, scene: &Arc<Scene>) -> Result<Capture, CliError> {
+    /// The picture with all that a judge needs; `again`: after itself, if no effect remembers any.
+    pub fn capture(
+        &mut self,
+        preset: &Preset,
+        scene: &Arc<Scene>,
+        again: bool,
+    ) -> Result<Capture, CliError> {
         let factor = preset.accuracy.scale().factor();
-        let moments = self.moments(preset, scene, factor)?;
+        let mut moments = self.moments(preset, scene, factor)?;
+        if again && preset.stack.earlier_frames().is_none() {
+            moments.extend_from_within(..);
+        }
         match self {
             Self::Oracle => {
                 let ((view, stack), before) = moments
                     .split_last()
                     .expect("a preset has at least one frame");
-                let before = if before.is_empty() {
-                    None
-                } else {
-                    Some(oracle::render_sequence(scene, before)?)
-                };
+                let drawn = || oracle::render_sequence(scene, before);
+                let before = (!before.is_empty()).then(drawn).transpose()?;
                 let earlier = before.as_ref().map(Frame::earlier);
                 let (frame, geometry) = oracle::render_with_geometry(scene, view, stack, earlier)?;
                 Ok(Capture {
@@ -267,10 +273,11 @@ pub fn adapter_json(summary: &AdapterSummary, caps: &Caps) -> Value {
     })
 }
 
-/// The scene of a preset. Warns of scopes that match no part of it.
+/// The scene of a preset, which then has what it [takes from it](PresetFile::settle). Warns of scopes
+/// that match no part of it.
 pub fn scene_of(
     common: &Common,
-    preset_file: &PresetFile,
+    preset_file: &mut PresetFile,
     streams: &Streams,
 ) -> Result<Arc<Scene>, CliError> {
     let (scene, warnings) = loading::watched(streams, || scene_with_warnings(common, preset_file))?;
@@ -280,10 +287,21 @@ pub fn scene_of(
     Ok(scene)
 }
 
-/// The scene of a preset, with warnings about scopes that match no part of it.
+/// Tells what a person should know of the scene of a picture.
+pub fn tell(preset: &Preset, scene: &Scene, streams: &Streams) {
+    scene.notes.iter().for_each(|note| streams.note(note));
+    if let Some(camera) = preset.cropping_camera(scene) {
+        let name = legible_line(&camera.name);
+        streams.note(&format!(
+            "info: the file's camera {name} leaves out some of the model; --set 'scene.camera={NO_CAMERA}' shows all of it"
+        ));
+    }
+}
+
+/// [`scene_of`], with the warnings.
 pub fn scene_with_warnings(
     common: &Common,
-    preset_file: &PresetFile,
+    preset_file: &mut PresetFile,
 ) -> Result<(Arc<Scene>, Vec<String>), CliError> {
     let scene = preset_file::load_scene(&preset_file.preset, preset_file.path.as_deref())
         .map_err(|e| CliError::from(e).during(format!("preset {}", preset_file.id)))?;
@@ -291,6 +309,11 @@ pub fn scene_with_warnings(
         return Err(CliError::usage(format!("{}: {fault}", scene.name))
             .during(format!("preset {}", preset_file.id)));
     }
+    let is_lit = common
+        .set
+        .iter()
+        .any(|set| set.trim_start().starts_with("studio.lights"));
+    preset_file.settle(&scene, !is_lit);
     let file = preset_file.path.as_ref().map_or_else(
         || format!("{}.toml", preset_file.id),
         |path| path.display().to_string(),

@@ -33,10 +33,10 @@ pub fn run(common: &Common, args: &Bless, streams: &mut Streams) -> Result<Exit,
     let preset_files = preset_files(common, args, streams)?;
     let bar = streams.progress(preset_files.len() as u64);
     let (mut results, mut changed) = (Vec::new(), false);
-    for (preset_file, writes) in preset_files {
+    for (mut preset_file, writes) in preset_files {
         bar.set_message(preset_file.id.clone());
-        let golden = golden::draw(&preset_file, &*scene_of(common, &preset_file, streams)?)
-            .map_err(CliError::usage)?;
+        let scene = scene_of(common, &mut preset_file, streams)?;
+        let golden = golden::draw(&preset_file, &scene).map_err(CliError::usage)?;
         let snapshots = args
             .snapshots
             .clone()

@@ -103,9 +103,9 @@ pub fn check(
         position: None,
         drawn: None,
     };
-    let outcome = open(common, file).and_then(|preset_file| {
+    let outcome = open(common, file).and_then(|mut preset_file| {
         finding.warnings.clone_from(&preset_file.warnings);
-        let (scene, missing) = scene_with_warnings(common, &preset_file)?;
+        let (scene, missing) = scene_with_warnings(common, &mut preset_file)?;
         finding.warnings.extend(missing);
         check_plan(&preset_file.preset, &scene)?;
         backend

@@ -107,15 +107,13 @@ fn side(
             triangle_id: None,
         });
     }
-    let preset_file = open_as(common, what, args.size, None, None)?;
+    let mut preset_file = open_as(common, what, args.size, None, None)?;
     let backend = match backend {
         Some(backend) => backend,
         None => backend.insert(Backend::open(common, streams)?),
     };
-    let frame = backend.frame(
-        &preset_file.preset,
-        &scene_of(common, &preset_file, streams)?,
-    )?;
+    let scene = scene_of(common, &mut preset_file, streams)?;
+    let frame = backend.frame(&preset_file.preset, &scene)?;
     Ok(Side {
         size: [frame.width, frame.height],
         color: frame.color,

@@ -22,8 +22,8 @@ use crate::{
 };
 
 pub fn run(common: &Common, args: &Explain, streams: &mut Streams) -> Result<Exit, CliError> {
-    let preset_file = open_as(common, &args.input, args.size, None, None)?;
-    let scene = scene_of(common, &preset_file, streams)?;
+    let mut preset_file = open_as(common, &args.input, args.size, None, None)?;
+    let scene = scene_of(common, &mut preset_file, streams)?;
     // Without an adapter there is no plan, but the preset can be described.
     let backend = match Backend::open(common, streams) {
         Ok(backend) => Some(backend),

@@ -13,8 +13,8 @@ use super::{
 use crate::link;
 
 pub fn run(common: &Common, args: &Link, streams: &mut Streams) -> Result<Exit, CliError> {
-    let preset_file = open(common, &args.input)?;
-    let scene = scene_of(common, &preset_file, streams)?;
+    let mut preset_file = open(common, &args.input)?;
+    let scene = scene_of(common, &mut preset_file, streams)?;
     let line = link::line(&preset_file).map_err(CliError::usage)?;
     let bits = link::bits(&preset_file.preset, &scene);
     if let Err(why) = &bits {

@@ -65,11 +65,9 @@ pub fn subjects(
     }
     preset_files
         .into_iter()
-        .map(|preset_file| {
-            Ok((
-                preset_file.clone(),
-                scene_of(common, &preset_file, streams)?,
-            ))
+        .map(|mut preset_file| {
+            let scene = scene_of(common, &mut preset_file, streams)?;
+            Ok((preset_file, scene))
         })
         .collect()
 }

@@ -11,7 +11,6 @@ mod bench;
 mod bless;
 mod check;
 mod compare;
-mod contact_sheet;
 mod error;
 mod explain;
 mod files;
@@ -40,7 +39,7 @@ mod verify;
 
 use std::io::{self, Write as _};
 
-use clap::CommandFactory as _;
+use clap::{CommandFactory as _, FromArgMatches as _};
 use serde_json::{Value, json};
 
 use args::Common;
@@ -89,9 +88,9 @@ pub fn run(cli: &Cli) -> Result<Exit, CliError> {
     };
     if cli.common.preset.is_some() && !command.takes_look() {
         return Err(CliError::usage(format!(
-            "--preset has no meaning for {}; it puts a look on the scene that render, sequence, verify, compare, explain, probe, parts, bench, link, page or the \
-             window shows",
-            command.name()
+            "--preset has no meaning for {}; it puts a look on the scene that {} or the window shows",
+            command.name(),
+            args::TAKES_LOOK.join(", ")
         )));
     }
     if let Some(preset_file) = &cli.open {
@@ -208,6 +207,16 @@ fn suggest_command(error: CliError, what: &str) -> CliError {
         Some(sentence) if is_unknown => CliError::usage(sentence),
         _ => error,
     }
+}
+
+/// The arguments of this process.
+///
+/// # Errors
+/// They cannot be read, or ask for help.
+pub fn parse() -> Result<Cli, clap::Error> {
+    let mut command = args::command();
+    let matches = command.try_get_matches_from_mut(std::env::args_os())?;
+    Cli::from_arg_matches(&matches).map_err(|error| error.format(&mut command))
 }
 
 /// What is wrong with arguments that cannot be read because the first word is a mistyped command.

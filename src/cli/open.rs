@@ -125,8 +125,8 @@ pub fn read(common: &Common, what: &str) -> Result<PresetFile, CliError> {
 /// `own` also if it has effects on parts.
 pub fn land(common: &Common, look: &PresetFile, own: &PresetFile) -> Result<PresetFile, CliError> {
     let bounds = |preset_file: &PresetFile| {
-        let bounds =
-            preset_file::scene_bounds(&preset_file.preset.scene, preset_file.path.as_deref());
+        let PresetFile { preset, path, .. } = preset_file;
+        let bounds = preset_file::scene_bounds(&preset.scene, preset.parts.up, path.as_deref());
         bounds.map_err(|error| CliError::from(error).during(format!("preset {}", preset_file.id)))
     };
     let own_scene = || {

@@ -20,7 +20,7 @@ use crate::{
 const PAGE: &str = include_str!("page.html");
 
 pub fn run(common: &Common, args: &Page, streams: &mut Streams) -> Result<Exit, CliError> {
-    let preset_file = open_as(common, &args.input, args.size, None, None)?;
+    let mut preset_file = open_as(common, &args.input, args.size, None, None)?;
     let size = preset_file.preset.output.size;
     if size.contains(&0) {
         return Err(CliError::usage(format!(
@@ -28,7 +28,6 @@ pub fn run(common: &Common, args: &Page, streams: &mut Streams) -> Result<Exit, 
             preset_file.id, size[0], size[1]
         )));
     }
-    let line = link::line(&preset_file).map_err(CliError::usage)?;
     if is_taken(&args.output) && !common.force {
         return Err(CliError::usage(format!(
             "{} exists; --force overwrites it",
@@ -40,7 +39,8 @@ pub fn run(common: &Common, args: &Page, streams: &mut Streams) -> Result<Exit, 
     } else {
         Existing::Keep
     };
-    let scene = scene_of(common, &preset_file, streams)?;
+    let scene = scene_of(common, &mut preset_file, streams)?;
+    let line = link::line(&preset_file).map_err(CliError::usage)?;
     let frame = Backend::Oracle.frame(&preset_file.preset, &scene)?;
     let png = preset_file::png_bytes(&frame.color, [frame.width, frame.height])?;
     let text = PAGE

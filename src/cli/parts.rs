@@ -13,8 +13,8 @@ use super::{
 use crate::scene::parts::{Part, PartKind, parts};
 
 pub fn run(common: &Common, args: &Parts, streams: &mut Streams) -> Result<Exit, CliError> {
-    let preset_file = open(common, &args.input)?;
-    let scene = scene_of(common, &preset_file, streams)?;
+    let mut preset_file = open(common, &args.input)?;
+    let scene = scene_of(common, &mut preset_file, streams)?;
     let parts = parts(&scene);
     if streams.json {
         let variant = |name: &String| json!({ "kind": "variant", "name": name });

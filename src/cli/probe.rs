@@ -51,7 +51,7 @@ fn pixel(text: &str) -> Result<[u32; 2], String> {
 }
 
 pub fn run(common: &Common, args: &Probe, streams: &mut Streams) -> Result<Exit, CliError> {
-    let preset_file = open_as(common, &args.input, args.size, None, None)?;
+    let mut preset_file = open_as(common, &args.input, args.size, None, None)?;
     let (size, pixel) = (preset_file.preset.output.size, args.pixel);
     if pixel[0] >= size[0] || pixel[1] >= size[1] {
         return Err(CliError::usage(format!(
@@ -65,10 +65,10 @@ pub fn run(common: &Common, args: &Probe, streams: &mut Streams) -> Result<Exit,
             size[1].saturating_sub(1)
         )));
     }
-    let scene = scene_of(common, &preset_file, streams)?;
+    let scene = scene_of(common, &mut preset_file, streams)?;
     let mut backend = Backend::open(common, streams)?;
     let preset = &preset_file.preset;
-    let capture = backend.capture(preset, &scene)?;
+    let capture = backend.capture(preset, &scene, false)?;
     let planned = match &backend {
         Backend::Gpu(renderer, _) => renderer.plan().map(|plan| plan.key.options),
         Backend::Oracle => None,
@@ -217,7 +217,7 @@ fn options(
             bar.set_message(format!("{}={word}", axis.name));
             let mut pinned = preset.clone();
             pinned.accuracy.pins.set(axis, Some(index));
-            let at_sample = backend.capture(&pinned, scene).map(|capture| {
+            let at_sample = backend.capture(&pinned, scene, false).map(|capture| {
                 let first = drawn_pixels(pixel, capture.geometry.scale)[0];
                 let at = self::index(&capture, first);
                 let frame = &capture.frame;

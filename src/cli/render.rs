@@ -1,36 +1,28 @@
 //! `render`: one picture of each preset, and arrays of its triangle ids and depths.
 
+use std::path::PathBuf;
+
 use serde_json::json;
 
 use super::{
     args::{Common, Render},
     arrays,
-    backend::{Backend, scene_of, scene_with_warnings},
+    backend::{Backend, scene_of, scene_with_warnings, tell},
     error::{CliError, Exit},
     files::{self, Names},
     open::{named, open, retake},
     streams::Streams,
 };
-use crate::preset_file::{self, PresetFile};
+use crate::{
+    frame::Frame,
+    preset_file::{self, PresetFile},
+    scene::Scene,
+};
 
 pub fn run(common: &Common, args: &Render, streams: &mut Streams) -> Result<Exit, CliError> {
+    check_names(args, streams)?;
     let to_stdout = args.output == "-";
-    files::check_picture_name(&args.output)?;
-    if to_stdout && (streams.json || args.inputs.len() > 1) {
-        return Err(CliError::usage(
-            "-o - writes one PNG to stdout; leave out --json and name one preset",
-        ));
-    }
-    if args.inputs.len() > 1
-        && !(files::has_preset(&args.output)? || files::has_number(&args.output)?)
-    {
-        return Err(CliError::usage(format!(
-            "{}: put {{preset}} or {{n}} into the name, since there are several presets",
-            args.output
-        )));
-    }
-    check_arrays(args)?;
-    let preset_files = args
+    let mut preset_files = args
         .inputs
         .iter()
         .map(|what| open_with_flags(common, args, what))
@@ -51,10 +43,11 @@ pub fn run(common: &Common, args: &Render, streams: &mut Streams) -> Result<Exit
     }
     let bar = streams.progress(preset_files.len() as u64);
     let mut results = Vec::new();
-    for preset_file in &preset_files {
+    for preset_file in &mut preset_files {
         bar.set_message(preset_file.id.clone());
         let scene = scene_of(common, preset_file, streams)?;
-        scene.notes.iter().for_each(|note| streams.note(note));
+        let preset_file = &*preset_file;
+        tell(&preset_file.preset, &scene, streams);
         let size = preset_file.preset.output.size;
         if preset_file.preset.view(&scene, size).precision.is_relative {
             streams.note("info: the scene lies far from its origin, so positions are taken relative to the eye");
@@ -72,42 +65,23 @@ pub fn run(common: &Common, args: &Render, streams: &mut Streams) -> Result<Exit
             preset_file::png_with_preset(&frame, &saved, &backend.provenance())?
         };
         bar.inc(1);
-        let mut written = Vec::new();
-        if !to_stdout {
-            written.push((
-                "file",
-                files::create(&args.output, &names, common.force, &png)?,
-            ));
-        }
-        if let Some(template) = &args.triangle_ids {
-            written.push((
-                "triangle_ids",
-                files::create(
-                    template,
-                    &names,
-                    common.force,
-                    &arrays::triangle_ids(&frame),
-                )?,
-            ));
-        }
-        if let Some(template) = &args.depths {
-            let view = preset_file
-                .preset
-                .view(&scene, preset_file.preset.output.size);
-            written.push((
-                "depths",
-                files::create(
-                    template,
-                    &names,
-                    common.force,
-                    &arrays::depths(&frame, &view),
-                )?,
-            ));
-        }
         if to_stdout {
+            write_arrays(common, args, preset_file, &scene, &frame, &names)?;
             streams.bytes(&png)?;
             continue;
         }
+        let mut written = vec![(
+            "file",
+            files::create(&args.output, &names, common.force, &png)?,
+        )];
+        written.extend(write_arrays(
+            common,
+            args,
+            preset_file,
+            &scene,
+            &frame,
+            &names,
+        )?);
         let mut result = json!({ "size": [frame.width, frame.height], "covered": frame.covered(), "counters": frame.counters });
         for (what, path) in &written {
             result[what] = path.to_string_lossy().into();
@@ -122,6 +96,54 @@ pub fn run(common: &Common, args: &Render, streams: &mut Streams) -> Result<Exit
         streams.object("render", backend.json(), results)?;
     }
     Ok(Exit::Done)
+}
+
+/// Errors: a name that is no picture's, or that several presets would share.
+fn check_names(args: &Render, streams: &Streams) -> Result<(), CliError> {
+    let to_stdout = args.output == "-";
+    files::check_picture_name(&args.output)?;
+    if to_stdout && (streams.json || args.inputs.len() > 1) {
+        return Err(CliError::usage(
+            "-o - writes one PNG to stdout; leave out --json and name one preset",
+        ));
+    }
+    if args.inputs.len() > 1
+        && !(files::has_preset(&args.output)? || files::has_number(&args.output)?)
+    {
+        return Err(CliError::usage(format!(
+            "{}: put {{preset}} or {{n}} into the name, since there are several presets",
+            args.output
+        )));
+    }
+    check_arrays(args)
+}
+
+/// The arrays beside the picture, each with its key in `--json` and its path.
+fn write_arrays(
+    common: &Common,
+    args: &Render,
+    preset_file: &PresetFile,
+    scene: &Scene,
+    frame: &Frame,
+    names: &Names,
+) -> Result<Vec<(&'static str, PathBuf)>, CliError> {
+    let mut written = Vec::new();
+    if let Some(template) = &args.triangle_ids {
+        written.push((
+            "triangle_ids",
+            files::create(template, names, common.force, &arrays::triangle_ids(frame))?,
+        ));
+    }
+    if let Some(template) = &args.depths {
+        let view = preset_file
+            .preset
+            .view(scene, preset_file.preset.output.size);
+        written.push((
+            "depths",
+            files::create(template, names, common.force, &arrays::depths(frame, &view))?,
+        ));
+    }
+    Ok(written)
 }
 
 /// Refuses names of arrays that cannot hold one array for each preset.
@@ -160,7 +182,7 @@ fn check_arrays(args: &Render) -> Result<(), CliError> {
 fn open_with_flags(common: &Common, args: &Render, what: &str) -> Result<PresetFile, CliError> {
     let mut preset_file = open(common, what)?;
     if let Some(other) = &args.toward {
-        let (scene, _) = scene_with_warnings(common, &preset_file)?;
+        let (scene, _) = scene_with_warnings(common, &mut preset_file)?;
         preset_file = preset_file
             .toward(&open(common, other)?, args.by, &scene)
             .map_err(CliError::usage)?;

@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 
 use super::{
     args::{Common, Sequence},
-    backend::{Backend, scene_of},
+    backend::{Backend, scene_of, tell},
     error::{CliError, Exit},
     files::{self, Names},
     open::{named, open, open_as},
@@ -17,8 +17,8 @@ use super::{
 };
 use crate::{
     film::{
-        Film, FilmError, FrameJob, Observer, Outputs, Painter, Production, Schedule, Times,
-        VideoTarget,
+        Container, Film, FilmError, FrameJob, Observer, Outputs, Painter, Production, Schedule,
+        Times, VideoTarget,
     },
     frame::Frame,
     preset::Preset,
@@ -71,15 +71,19 @@ impl From<FilmError> for CliError {
 }
 
 pub fn run(common: &Common, args: &Sequence, streams: &mut Streams) -> Result<Exit, CliError> {
-    let preset_file = open_with_flags(common, args)?;
+    let mut preset_file = open_with_flags(common, args)?;
     preset_file
         .remarks()
         .iter()
         .for_each(|remark| streams.note(remark));
+    let container = args.video.as_deref().and_then(Container::of);
+    if let Some(note) = container.and_then(|container| container.fps_note(args.fps)) {
+        streams.note(&note);
+    }
     let times = Times {
         from_s: args.from,
         to_s: args.to,
-        fps: args.fps,
+        fps: container.map_or(args.fps, |container| container.fps(args.fps)),
         frames: args.frames.unwrap_or_default(),
     };
     let schedule = Schedule::new(&times, &preset_file.preset.clock, "--")?;
@@ -93,8 +97,8 @@ pub fn run(common: &Common, args: &Sequence, streams: &mut Streams) -> Result<Ex
         .as_deref()
         .map(|path| VideoTarget::new(path, preset_file.preset.output.size))
         .transpose()?;
-    let scene = scene_of(common, &preset_file, streams)?;
-    scene.notes.iter().for_each(|note| streams.note(note));
+    let scene = scene_of(common, &mut preset_file, streams)?;
+    tell(&preset_file.preset, &scene, streams);
     let mut film = Film::new(preset_file, scene, schedule, args.turntable)?;
     if let Some(other) = &args.toward {
         film = film.toward(open(common, other)?)?;

@@ -7,7 +7,6 @@ use serde_json::json;
 use super::{
     args::{Common, Sweep},
     backend::{Backend, scene_of},
-    contact_sheet::{ContactSheet, Picture, size_of},
     error::{CliError, Exit},
     files,
     open::open_as,
@@ -15,6 +14,7 @@ use super::{
     streams::Streams,
 };
 use crate::{
+    contact_sheet::{ContactSheet, Picture, size_of},
     preset::{Preset, SceneSource},
     preset_file::{
         self, PresetFile,
@@ -44,10 +44,15 @@ pub fn run(common: &Common, args: &Sweep, streams: &mut Streams) -> Result<Exit,
         .map(|text| Variation::parse(text))
         .collect::<Result<Vec<_>, _>>()
         .map_err(vary)?;
-    let base = open_with_flags(common, args)?;
+    let mut base = open_with_flags(common, args)?;
     base.remarks()
         .iter()
         .for_each(|remark| streams.note(remark));
+    let mut scene: Option<Shown> = None;
+    if base.is_unsettled() {
+        let loaded = scene_of(common, &mut base, streams)?;
+        scene = Some(Shown::new(&base.preset, loaded));
+    }
     // The reader of values names --set in its errors; here the values come from --vary.
     let sheet = Sheet::new(&base, &variations)
         .map_err(|error| CliError::usage(error.replacen("--set", "--vary", 1)))?;
@@ -76,13 +81,15 @@ pub fn run(common: &Common, args: &Sweep, streams: &mut Streams) -> Result<Exit,
         files::target(&args.output, &names, common.force)?;
     }
     let bar = streams.progress(sheet.cells.len() as u64);
-    let mut scene: Option<Shown> = None;
     for (index, cell) in sheet.cells.iter().enumerate() {
         bar.set_message(cell.caption());
         let preset = &cell.preset_file.preset;
         let shown = match scene.take().filter(|shown| shown.is_of(preset)) {
             Some(shown) => shown,
-            None => Shown::new(preset, scene_of(common, &cell.preset_file, streams)?),
+            None => Shown::new(
+                preset,
+                scene_of(common, &mut cell.preset_file.clone(), streams)?,
+            ),
         };
         let frame = backend
             .frame(preset, &shown.scene)

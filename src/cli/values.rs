@@ -1,7 +1,7 @@
 //! Values of flags that are read from text. What cannot be read is said with what can be written.
 
 use crate::{
-    film::Turntable,
+    film::{Turntable, read_rate},
     preset::{NAMED_SIZES, named_size},
 };
 
@@ -43,6 +43,13 @@ pub fn fraction(text: &str) -> Result<f64, String> {
         .ok()
         .filter(|fraction| (0.0..=1.0).contains(fraction))
         .ok_or_else(|| format!("{text:?} is no number from 0 to 1"))
+}
+
+/// `30`, `29.97` or `30000/1001`.
+pub fn rate(text: &str) -> Result<f64, String> {
+    read_rate(text).ok_or_else(|| {
+        format!("{text:?} is no rate; write a number of frames a second or a fraction, for instance 30 or 30000/1001")
+    })
 }
 
 /// `1920x1080`, or the name of a size.

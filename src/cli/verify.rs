@@ -14,7 +14,9 @@ use super::{
     streams::{Streams, number, table},
 };
 use crate::{
-    accuracy::Skinning,
+    accuracy::{Skinning, Transparency},
+    effect_files::{self, Crossing, Unsound},
+    effects::Stack,
     frame::Frame,
     gpu::Capture,
     measure::{
@@ -52,17 +54,21 @@ pub struct Row {
     /// Pixels with a color channel over the preset's budget.
     pixels_over_tolerance: u64,
     frames: u32,
+    /// An effect of a file on the finished picture, where colors differ.
+    image_effect: Option<String>,
     /// What failed, one sentence each.
     pub failures: Vec<String>,
     /// What the preset allows to err without saying by how much: pinned options and the tier.
     pub without_budget: Vec<String>,
+    /// What each effect makes that is no color, and where, one sentence each.
+    unsound: Vec<String>,
     /// Volume with linear skinning, as a fraction of that with dual quaternions; none without
     /// skins.
     volume: Option<f64>,
 }
 
 pub fn run(common: &Common, args: &Verify, streams: &mut Streams) -> Result<Exit, CliError> {
-    let preset_files = presets(common, &args.inputs, streams)?;
+    let mut preset_files = presets(common, &args.inputs, streams)?;
     let mut backend = Backend::open(common, streams)?;
     if let Some(folder) = &args.output {
         std::fs::create_dir_all(folder).map_err(|e| {
@@ -77,7 +83,7 @@ pub fn run(common: &Common, args: &Verify, streams: &mut Streams) -> Result<Exit
     };
     let bar = streams.progress(preset_files.len() as u64);
     let mut rows = Vec::new();
-    for preset_file in &preset_files {
+    for preset_file in &mut preset_files {
         bar.set_message(preset_file.id.clone());
         let verified = scene_of(common, preset_file, streams)
             .and_then(|scene| check(common, &options, preset_file, &scene, &mut backend));
@@ -105,7 +111,15 @@ pub fn run(common: &Common, args: &Verify, streams: &mut Streams) -> Result<Exit
     } else {
         streams.text(&text(&rows, backend.class()))?;
     }
-    for preset_file in &preset_files {
+    tell_notes(&preset_files, &rows, streams);
+    Ok(Exit::failed_if(
+        rows.iter().any(|row| !row.failures.is_empty()),
+    ))
+}
+
+/// Says of each row what its figures do not.
+fn tell_notes(preset_files: &[PresetFile], rows: &[Row], streams: &mut Streams) {
+    for preset_file in preset_files {
         let names = judged_by_own_text(&preset_file.preset).join(", ");
         if !names.is_empty() {
             streams.note(&format!(
@@ -113,6 +127,12 @@ pub fn run(common: &Common, args: &Verify, streams: &mut Streams) -> Result<Exit
                 preset_file.id
             ));
         }
+    }
+    for (row, unsound) in rows
+        .iter()
+        .flat_map(|row| row.unsound.iter().map(move |u| (row, u)))
+    {
+        streams.note(&format!("{} with {}: {unsound}", row.preset, row.option));
     }
     rows.iter().filter(|row| row.accuracy.race_pixels > 0).for_each(|row| {
         streams.note(&format!(
@@ -156,11 +176,14 @@ pub fn run(common: &Common, args: &Verify, streams: &mut Streams) -> Result<Exit
     rows.iter().for_each(|row| {
         row.failures.iter().for_each(|failure| {
             streams.note(&format!("{} with {}: {failure}", row.preset, row.option))
-        })
+        });
+        if let (false, Some(effect)) = (row.failures.is_empty(), &row.image_effect) {
+            streams.note(&format!(
+                "{} with {}: where the colors of {effect} lie on steps, and that is meant, let them: [test] max_pixels = {} and why; --output DIR shows which pixels differ",
+                row.preset, row.option, row.pixels_over_tolerance
+            ));
+        }
     });
-    Ok(Exit::failed_if(
-        rows.iter().any(|row| !row.failures.is_empty()),
-    ))
 }
 
 /// The effects of a preset that have no independent twin: the oracle evaluates their own text in
@@ -197,6 +220,11 @@ pub fn check(
         // Before anything is drawn.
         oracle::can_judge(scene, &view, &stack, preset.accuracy.scale().factor())?;
     }
+    let image_effect = preset.stack.0.iter().find_map(|enabled| {
+        let effect = &enabled.effect;
+        let is_image = effect.hooks.passes.is_some() || effect.hooks.image.is_some();
+        (effect.is_of_file() && is_image).then(|| effect.name.clone())
+    });
     let volume = volume_fraction(&preset, scene)?;
     let (mut rows, mut first): (Vec<Row>, Option<(&str, Frame)>) = (Vec::new(), None);
     for option in backend.options(&preset) {
@@ -205,8 +233,25 @@ pub fn check(
             preset.accuracy.pins.with(option)
         });
         let name = option.map_or("exact", Visibility::name);
-        let capture = backend.capture(&pinned, scene)?;
-        let verdict = backend.judged(scene, &view, &stack, &capture)?;
+        let capture = backend.capture(&pinned, scene, false)?;
+        // Built-in effects are held by tests; those of files are watched while they are judged.
+        let is_watched = !judged_by_own_text(&preset).is_empty();
+        let judge = |stack: &Stack| {
+            if is_watched && matches!(backend, Backend::Oracle) {
+                // It compares nothing, so it draws for what watches.
+                oracle::render(scene, &view, stack)?;
+            }
+            backend.judged(scene, &view, stack, &capture)
+        };
+        let (verdict, crossings, overreaching) = if is_watched {
+            let (judged, overreaching) =
+                effect_files::overreaching(&stack, |stack| effect_files::crossings(stack, judge));
+            let (verdict, crossings) = judged.map_err(CliError::usage)?;
+            (verdict, crossings, overreaching)
+        } else {
+            (judge(&stack), Vec::new(), Vec::new())
+        };
+        let verdict = verdict?;
         let pixels_over_tolerance = budget.pixels_over_tolerance(&verdict, &capture.frame);
         let mut failures = budget.faults(
             &verdict.report,
@@ -214,6 +259,22 @@ pub fn check(
             options.allows_any_band,
         );
         failures.extend(scaling_failure(&capture));
+        let most = pinned.accuracy.pins.option();
+        if let Some(most) = most.and_then(Transparency::most_layers) {
+            let mut nearest = capture.clone();
+            nearest.frame.glass = capture.frame.glass.nearest(most as usize);
+            let off = backend.judged(scene, &view, &stack, &nearest)?;
+            let off = off.report.max_color_delta;
+            if off > 1 {
+                failures.push(format!("{off} of 255 off {most} nearest layers"));
+            }
+        }
+        failures.extend(overreaching.iter().map(|(effect, factor)| {
+            format!(
+                "{} would move a vertex {factor:.2} times as far as its parameters with @unit(m) add up to, or its @reach says, and is held there; let it move less, or state more",
+                effect.name
+            )
+        }));
         failures.extend(budget.count_faults(&capture.frame, capture.layers.as_deref()));
         if !budget.refused.is_empty() {
             failures.push(format!(
@@ -223,7 +284,7 @@ pub fn check(
         }
         let is_repeatable = preset.stack.is_repeatable() && !preset.accuracy.is_left_to_chance();
         for repeat in 1..=options.repeats {
-            if is_repeatable && backend.capture(&pinned, scene)?.frame != capture.frame {
+            if is_repeatable && backend.capture(&pinned, scene, true)?.frame != capture.frame {
                 failures.push(format!(
                     "frame {} is not bit-identical to the first",
                     repeat + 1
@@ -255,9 +316,11 @@ pub fn check(
                 .as_ref()
                 .map(|look| [look.id.clone(), preset_file.scene_name()]),
             judged_by_own_text: judged_by_own_text(&preset),
+            unsound: unsound(&crossings),
             option: name,
             accuracy: verdict.report,
             pixels_over_tolerance,
+            image_effect: image_effect.clone().filter(|_| pixels_over_tolerance > 0),
             frames: 1 + options.repeats,
             without_budget: if failures.is_empty() {
                 Vec::new()
@@ -409,4 +472,24 @@ fn json_row(row: &Row, backend: &Backend) -> Value {
     }
     object["rms_color_delta"] = number(row.accuracy.rms_color_delta);
     object
+}
+
+/// A sentence for each effect that makes what is not finite.
+fn unsound(crossings: &[Crossing]) -> Vec<String> {
+    let is_not_finite = |crossing: &&Crossing| crossing.made != Unsound::Negative;
+    let mut of_effects: Vec<(&Crossing, u64)> = Vec::new();
+    for crossing in crossings.iter().filter(is_not_finite) {
+        let known = of_effects
+            .iter_mut()
+            .find(|(first, _)| first.effect == crossing.effect);
+        match known {
+            Some((_, count)) => *count += 1,
+            None => of_effects.push((crossing, 1)),
+        }
+    }
+    let sentence = |(first, count): (&Crossing, u64)| {
+        let ([x, y], effect, made) = (first.pixel, &first.effect.name, first.made.word());
+        format!("{effect} makes {made} at {count} pixels, the first at {x}, {y}")
+    };
+    of_effects.into_iter().map(sentence).collect()
 }

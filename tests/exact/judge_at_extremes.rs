@@ -4,7 +4,8 @@
 
 use rasterlab::{
     accuracy::{DepthFormat, PinnedOptions, PositionFormat, Visibility},
-    effects::Effect,
+    effect_files::read,
+    effects::{Effect, Stack},
     gpu::{Capture, Renderer},
     measure::Budget,
     plan::AccuracyRequest,
@@ -154,6 +155,71 @@ fn dots_and_outlines_read_the_depth_that_a_rounded_key_stands_for() {
             );
         }
     }
+}
+
+#[test]
+fn ambient_light_is_as_exact_far_from_the_eye_as_near() {
+    let Some(mut renderer) = renderer() else {
+        return;
+    };
+    // A million meters have roundings of 6 cm, of which the effect's radius has eight.
+    let eye = "eye = [-1306.9121089497348, 931523.4472208153, -553999.5865975871]";
+    for projection in ["orthographic_height_m = 2.0", "fov_y_deg = 1.0"] {
+        exact_preset(
+            &mut renderer,
+            &format!("output.size = [96, 72]\n[camera]\n{eye}\n{projection}\n[effects.ambient]"),
+        );
+    }
+}
+
+/// NaN in one pixel and infinity in another, at run time.
+const NOT_FINITE: &str = "struct Bad { @range(0, 4, 0) more: u32 }
+fn bad(at: ImageAt, p: Bad) -> vec4f {
+    if at.x == 48 && at.y == 36 { return vec4f(bitcast<f32>(0x7fc00000u + p.more)); }
+    if at.x == 20 && at.y == 9 { return vec4f(bitcast<f32>(0x7f800000u + p.more)); }
+    return image_color(at.x, at.y);
+}";
+
+#[test]
+fn one_pixel_that_is_not_finite_stays_one_pixel() {
+    let Some(mut renderer) = renderer() else {
+        return;
+    };
+    let effect = read("bad.wgsl", "bad", NOT_FINITE).unwrap_or_else(|error| panic!("{error}"));
+    let scene = scene("sphere?triangles=500");
+    let view = view(&scene, [96, 72]);
+    let (mut bad, plain) = (Stack::default(), stack(&["bloom"]));
+    bad.enable(&effect);
+    bad.enable(Effect::find("bloom").expect("a built-in effect"));
+    let accuracy = AccuracyRequest::default();
+    let (capture, verdict) = judged(&mut renderer, &scene, &view, &bad, &accuracy);
+    assert_eq!(exactness(&verdict.report), Ok(()), "{:?}", verdict.report);
+    let (clean, _) = judged(&mut renderer, &scene, &view, &plain, &accuracy);
+    let apart = capture.frame.color.iter().zip(&clean.frame.color);
+    let far = |(a, b): &(&[u8; 4], &[u8; 4])| (0..4).any(|c| a[c].abs_diff(b[c]) > 4);
+    assert_eq!(
+        apart.filter(far).count(),
+        2,
+        "pixels that differ by more than 4 of 255"
+    );
+}
+
+#[test]
+fn centers_of_clipped_triangles_beside_the_eye_err_by_their_quotients() {
+    let Some(mut renderer) = renderer() else {
+        return;
+    };
+    // The eye is inside of a fan, whose triangles have their centers on either side of it.
+    let camera = "eye = [-0.004514218984405529, -0.008789869808921784, -0.008500272292612217]
+target = [0.6228166157677087, -0.6715926773288968, -0.32151463812062137]
+near_m = 0.001";
+    let wobble = "amplitude_m = 685.3344604463061\ndirection = [0.0, -2.0237188507299584e-06, 3.9013881956549175e-05]\nphase_turns = 0.0\nsway = [0.6996552251912239, 0.0, 1000.0]";
+    exact_preset(
+        &mut renderer,
+        &format!(
+            "scene.builtin = \"fan?n=8&seed=0\"\noutput.size = [1, 150]\n[camera]\n{camera}\n[effects.dissolve]\nmode = \"corner\"\npattern = \"sweep\"\nwidth = 30.23224372781227\n[effects.wobble]\n{wobble}"
+        ),
+    );
 }
 
 #[test]

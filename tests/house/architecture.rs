@@ -37,7 +37,7 @@ const ORDER: &[(&str, &[&str])] = &[
         &["host", "archive", "effect_files", "preset_file", "film"],
     ),
     ("crates/bench", &["baselines", "trade", "extremes"]),
-    (".", &["link", "golden", "app", "cli"]),
+    (".", &["contact_sheet", "link", "golden", "app", "cli"]),
 ];
 
 /// Folders whose `mod` lines, in `lib.rs` or `mod.rs`, are in order: each names only those above it.

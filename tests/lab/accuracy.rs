@@ -27,20 +27,21 @@ fn the_slider_chooses_a_tier_beside_its_cost_and_error() {
     slider(&lab, "accuracy.tier").scroll_to_me();
     lab.run_steps(3);
     assert!(
-        lab.query_all_by_label_contains("≤ 0 ppm, Δ ≤ 0").count() > 0,
+        lab.query_all_by_label_contains("no wrong pixel expected")
+            .count()
+            > 0,
         "what the precise tier may err by"
     );
     assert!(lab.query_by_label_contains("– wrong pixels (V)").is_some());
     click(&mut lab, Role::Button, "Verify");
     assert!(
-        lab.query_all_by_label_contains(" 0 ppm, ").count() > 0,
+        lab.query_all_by_label_contains(", no wrong pixel").count() > 0,
         "the precise tier was judged"
     );
-    assert_eq!(
-        lab.query_all_by_label_contains("per million: 0 wrong, ")
-            .count(),
-        1,
-        "what was measured"
+    let same = "the same options here as ";
+    assert!(
+        lab.query_all_by_label_contains(same).count() > 0,
+        "tiers that draw the same picture say so"
     );
     click(&mut lab, Role::Button, "Tier strict");
     assert_eq!((tier(&lab), lab.state().undo_steps()), (Tier::Strict, 1));

@@ -81,6 +81,25 @@ fn files_in(folder: &Path) -> Vec<PathBuf> {
 }
 
 #[test]
+fn a_size_is_rounded_when_its_field_is_left_and_a_message_says_so() {
+    let Some(mut lab) = lab("facet-knot") else {
+        return;
+    };
+    press(&mut lab, Modifiers::COMMAND | Modifiers::SHIFT, Key::E);
+    click(&mut lab, Role::Button, "MP4");
+    fill(&mut lab, Role::SpinButton, "Width of the film", "1920");
+    assert!(!shows(&lab, "became"), "{}", lab.state().log_text());
+    fill(&mut lab, Role::SpinButton, "Height of the film", "1081");
+    assert!(
+        shows(&lab, "1081 became 1080"),
+        "{}",
+        lab.state().log_text()
+    );
+    let width = lab.get_by_role_and_label(Role::SpinButton, "Width of the film");
+    assert_eq!(width.value().as_deref(), Some("1920 px"));
+}
+
+#[test]
 fn the_next_film_begins_as_the_last_one_was_exported_also_after_a_new_start() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let preset = folder.path().join("mine.toml");

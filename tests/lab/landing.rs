@@ -40,9 +40,11 @@ fn choose(lab: &mut Lab, title: &str, modifiers: Modifiers) {
 }
 
 fn stack(lab: &Lab) -> Vec<String> {
-    lab.state()
-        .preset_file()
-        .preset
+    stack_of(lab.state().preset_file())
+}
+
+fn stack_of(file: &PresetFile) -> Vec<String> {
+    file.preset
         .stack
         .0
         .iter()
@@ -266,6 +268,47 @@ fn a_model_takes_the_look_that_is_open_and_the_camera_shows_it_whole() {
     let radius = value(&lab, "facet", "radius_m")[0];
     let wanted = 0.9 * 0.5f64.sqrt() / sphere;
     assert!((radius - wanted).abs() < 1e-5, "{radius} is not {wanted}");
+}
+
+#[test]
+fn a_model_is_plain_until_a_look_is_chosen_and_after_a_click() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let model = model(folder.path());
+    let Some(mut lab) = opened(None, None) else {
+        return;
+    };
+    let plain = stack_of(preset_file::plain());
+    assert_ne!(stack(&lab), plain);
+    drop_files(&mut lab, &[&model]);
+    assert_eq!(
+        (stack(&lab), scene(&lab)),
+        (plain.clone(), SceneSource::File(model))
+    );
+    assert!(lab.query_by_label("unsaved").is_none() && lab.state().preset_file().is_plain());
+    let hatch = gallery("hatch");
+    choose(&mut lab, hatch.title(), Modifiers::NONE);
+    let other = folder.path().join("other.glb");
+    std::fs::write(&other, tiny_glb()).expect("a file");
+    drop_files(&mut lab, &[&other]);
+    assert_eq!(
+        stack(&lab),
+        stack_of(&hatch),
+        "it takes the look that was chosen"
+    );
+    for label in ["Plain look", "New"] {
+        match label {
+            "New" => press(&mut lab, Modifiers::COMMAND, Key::N),
+            _ => click(&mut lab, Role::Button, label),
+        }
+        settle(&mut lab);
+        assert_eq!(
+            (stack(&lab), scene(&lab)),
+            (plain.clone(), SceneSource::File(other.clone()))
+        );
+        undo(&mut lab);
+        assert_eq!(stack(&lab), stack_of(&hatch));
+    }
+    assert!(error_lines(&lab).is_empty(), "{:?}", error_lines(&lab));
 }
 
 #[test]

@@ -42,7 +42,7 @@ fn extremes(lab: &mut Lab) {
         .query_by_role_and_label(Role::TextInput, "Cases")
         .is_none()
     {
-        click(lab, Role::Button, "View");
+        click(lab, Role::Button, "Judge");
         click(lab, Role::Button, "Run extreme cases…");
         lab.get_by_label("Cases").focus();
         lab.run_steps(2);

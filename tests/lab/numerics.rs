@@ -1,4 +1,4 @@
-//! Promise: the window says how far f32 leads an effect of the user's own astray, and where; and
+//! Promise: the window says how far f32 leads an effect astray, and where; and
 //! which effect and parameter made NaN.
 
 use egui::{Key, Modifiers, Role};
@@ -12,14 +12,16 @@ use crate::{
 const PRESET: &str =
     "schema = 2\n[scene]\nbuiltin = \"teapot\"\n[effects.lambert]\n[effects.ink]\n";
 
-/// The number of the line of errors in the inspector.
+/// The number of the last line of errors in the inspector, which is that of the ink.
 fn error(lab: &Lab) -> Option<String> {
-    let node = lab.query_all_by_role(Role::Button).find_map(|node| {
+    let mut nodes = lab.query_all_by_role(Role::Button).filter_map(|node| {
         node.accesskit_node()
             .label()
             .filter(|label| label.starts_with("f32 error: "))
     });
-    node.map(|label| label.trim_start_matches("f32 error: ").to_owned())
+    nodes
+        .next_back()
+        .map(|label| label.trim_start_matches("f32 error: ").to_owned())
 }
 
 fn has(lab: &Lab, text: &str) -> bool {

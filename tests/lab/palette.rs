@@ -326,7 +326,7 @@ fn every_button_and_menu_entry_is_in_the_palette() {
             .collect()
     };
     let mut labels = buttons(&lab);
-    for menu in ["File", "Edit", "Time", "View"] {
+    for menu in ["File", "Edit", "Time", "View", "Judge", "Help"] {
         lab.get_by_role_and_label(Role::Button, menu).click();
         lab.run_steps(4);
         labels.extend(buttons(&lab));
@@ -341,6 +341,7 @@ fn every_button_and_menu_entry_is_in_the_palette() {
         "fold ",
         "mute ",
         "apply ",
+        "f32 error: ",
         "drag ",
         "more of ",
         "keys of ",
@@ -357,6 +358,8 @@ fn every_button_and_menu_entry_is_in_the_palette() {
         "edit",
         "time",
         "view",
+        "judge",
+        "help",
         "open recent",
         "theme and size",
         "presets",

@@ -200,16 +200,15 @@ fn header_and_legend_count_the_same_wrong_pixels() {
         .next()
         .expect("a count");
     assert_ne!(count, "0", "a grid of 1/16 px moves edges");
-    let legend = format!("wrong (true): {count} px");
+    let legend = format!("by rounding: {count} px");
     assert!(
         lab.query_by_label(&legend).is_some(),
         "{header} beside {:?}",
-        texts(&lab, "wrong (true)")
+        texts(&lab, "by rounding:")
     );
     assert!(texts(&lab, "no errors").is_empty());
     // What the two counts mean is said on hover.
-    let words =
-        "True: pixels that show another triangle than the exact picture of the true positions";
+    let words = "By rounding: pixels that show another triangle than the exact picture of the true positions";
     assert!(texts(&lab, words).is_empty());
     lab.get_all_by_label_contains("no wrong pixel, ")
         .next()

@@ -154,7 +154,7 @@ fn verifying_shows_how_far_it_is_and_ends_in_the_middle_when_it_is_canceled() {
 fn the_extremes_run_beside_the_window_and_can_be_stopped() {
     draw_pictures();
     let Some(mut lab) = lab("facet") else { return };
-    click(&mut lab, Role::Button, "View");
+    click(&mut lab, Role::Button, "Judge");
     click(&mut lab, Role::Button, "Run extreme cases…");
     let run = |lab: &mut Lab, cases: &str, button: &str| {
         lab.get_by_label("Cases").focus();
@@ -281,7 +281,7 @@ fn the_legend_says_that_nothing_is_wrong_where_nothing_is() {
     let Some(mut lab) = lab("facet-sweep") else {
         return;
     };
-    show_overlay(&mut lab, "wrong (snapped)");
+    show_overlay(&mut lab, "wrong");
     show_overlay(&mut lab, "holes");
     let pixels = lab.state().accuracy().expect("a verdict").pixels;
     let sentence = format!(

@@ -1,5 +1,5 @@
 //! Promise: a real window on a virtual display (Xvfb) opens, draws, follows the pointer, saves a
-//! preset and closes.
+//! preset, shares the clipboard with other programs and closes.
 
 use std::{
     io::{BufRead as _, BufReader},
@@ -12,14 +12,17 @@ use rasterlab::preset_file::{self, Folders};
 use x11rb::{
     connection::Connection as _,
     protocol::{
+        Event,
         xproto::{
-            BUTTON_PRESS_EVENT, BUTTON_RELEASE_EVENT, ClientMessageEvent, ConnectionExt as _,
-            EventMask, ImageFormat, InputFocus, KEY_PRESS_EVENT, KEY_RELEASE_EVENT,
-            MOTION_NOTIFY_EVENT, Window,
+            AtomEnum, BUTTON_PRESS_EVENT, BUTTON_RELEASE_EVENT, ClientMessageEvent,
+            ConnectionExt as _, CreateWindowAux, EventMask, ImageFormat, InputFocus,
+            KEY_PRESS_EVENT, KEY_RELEASE_EVENT, MOTION_NOTIFY_EVENT, PropMode,
+            SELECTION_NOTIFY_EVENT, SelectionNotifyEvent, Window, WindowClass,
         },
         xtest::ConnectionExt as _,
     },
     rust_connection::RustConnection,
+    wrapper::ConnectionExt as _,
 };
 
 const SIZE: [u16; 2] = [1280, 800];
@@ -200,22 +203,89 @@ impl Display {
             .expect("the focus");
     }
 
+    fn atom(&self, name: &str) -> u32 {
+        let cookie = self.x.intern_atom(false, name.as_bytes());
+        cookie.expect("a request").reply().expect("an atom").atom
+    }
+
+    /// A window of another program, which is not shown.
+    fn other_window(&self) -> Window {
+        let window = self.x.generate_id().expect("an id");
+        let aux = CreateWindowAux::new();
+        let class = WindowClass::INPUT_OUTPUT;
+        self.x
+            .create_window(0, window, self.root, 0, 0, 1, 1, 0, class, 0, &aux)
+            .expect("a request")
+            .check()
+            .expect("a window");
+        window
+    }
+
+    /// Asks the owner of the clipboard for its text, which then comes as an event.
+    fn ask_for_text(&self, other: Window) {
+        let [clipboard, utf8] = ["CLIPBOARD", "UTF8_STRING"].map(|name| self.atom(name));
+        self.x
+            .convert_selection(other, clipboard, utf8, clipboard, x11rb::CURRENT_TIME)
+            .expect("a request")
+            .check()
+            .expect("the text is asked for");
+    }
+
+    /// Takes what has come for `other`: gives `offered` to who asks for the clipboard.
+    fn exchange(&self, other: Window, offered: &str) -> Option<Exchanged> {
+        let utf8 = self.atom("UTF8_STRING");
+        while let Some(event) = self.x.poll_for_event().expect("a connection") {
+            match event {
+                Event::SelectionRequest(asked) => {
+                    let property = match asked.target == utf8 {
+                        true => asked.property,
+                        false => x11rb::NONE,
+                    };
+                    if property != x11rb::NONE {
+                        let (mode, bytes) = (PropMode::REPLACE, offered.as_bytes());
+                        self.x
+                            .change_property8(mode, asked.requestor, property, utf8, bytes)
+                            .expect("a request");
+                    }
+                    let notify = SelectionNotifyEvent {
+                        response_type: SELECTION_NOTIFY_EVENT,
+                        sequence: 0,
+                        time: asked.time,
+                        requestor: asked.requestor,
+                        selection: asked.selection,
+                        target: asked.target,
+                        property,
+                    };
+                    self.x
+                        .send_event(false, asked.requestor, EventMask::NO_EVENT, notify)
+                        .expect("a request");
+                    self.x.flush().expect("a connection");
+                    if property != x11rb::NONE {
+                        return Some(Exchanged::Given);
+                    }
+                }
+                Event::SelectionNotify(came) if came.property != x11rb::NONE => {
+                    let any = AtomEnum::ANY;
+                    let cookie = self
+                        .x
+                        .get_property(true, other, came.property, any, 0, 1 << 20);
+                    let value = cookie.expect("a request").reply().expect("a text").value;
+                    return String::from_utf8(value).ok().map(Exchanged::Taken);
+                }
+                _ => {}
+            }
+        }
+        None
+    }
+
     /// What a window manager sends when its close button is pressed.
     fn ask_to_close(&self) {
-        let atom = |name: &str| {
-            self.x
-                .intern_atom(false, name.as_bytes())
-                .expect("a request")
-                .reply()
-                .expect("an atom")
-                .atom
-        };
         let window = self.window();
         let event = ClientMessageEvent::new(
             32,
             window,
-            atom("WM_PROTOCOLS"),
-            [atom("WM_DELETE_WINDOW"), x11rb::CURRENT_TIME, 0, 0, 0],
+            self.atom("WM_PROTOCOLS"),
+            [self.atom("WM_DELETE_WINDOW"), x11rb::CURRENT_TIME, 0, 0, 0],
         );
         self.x
             .send_event(false, window, EventMask::NO_EVENT, event)
@@ -223,6 +293,12 @@ impl Display {
             .check()
             .expect("the event is sent");
     }
+}
+
+/// What became of the clipboard between two programs.
+enum Exchanged {
+    Given,
+    Taken(String),
 }
 
 /// The lab on `display`, at home in `home`.
@@ -338,6 +414,54 @@ fn a_real_window_opens_draws_follows_the_hand_saves_and_closes() {
         wait_for_exit(&mut lab).success(),
         "the lab closes with status 0"
     );
+}
+
+#[test]
+fn presets_go_to_and_come_from_other_programs() {
+    if is_skipped() {
+        return;
+    }
+    let home = tempfile::tempdir().expect("a temporary folder");
+    let display = Display::open();
+    let mut lab = start(&display, home.path(), &["facet-knot"]);
+    wait_for("the picture appeared", &mut lab, || {
+        drawn(&display.view()) > 5_000
+    });
+    display.focus();
+    let other = display.other_window();
+    let preset = |id: &str| {
+        let opened = preset_file::open(id, &Folders::default());
+        opened.expect("a built-in preset")
+    };
+    let offered = preset_file::to_line(&preset("toon"));
+    let copied = |lab: &mut Owned, what: &str, id: &str| {
+        let mut asked = Instant::now() - PATIENCE;
+        wait_for(what, lab, || {
+            if asked.elapsed() > Duration::from_secs(2) {
+                display.press(&[CONTROL, u32::from(b'c')]);
+                display.ask_for_text(other);
+                asked = Instant::now();
+            }
+            let Some(Exchanged::Taken(line)) = display.exchange(other, &offered) else {
+                return false;
+            };
+            preset_file::from_line(&line)
+                .is_ok_and(|copied| copied.preset.stack == preset(id).preset.stack)
+        });
+    };
+    copied(&mut lab, "the preset was copied", "facet-knot");
+    let clipboard = display.atom("CLIPBOARD");
+    display
+        .x
+        .set_selection_owner(other, clipboard, x11rb::CURRENT_TIME)
+        .expect("a request")
+        .check()
+        .expect("another program owns the clipboard");
+    display.press(&[CONTROL, u32::from(b'v')]);
+    wait_for("the lab asked for the clipboard", &mut lab, || {
+        matches!(display.exchange(other, &offered), Some(Exchanged::Given))
+    });
+    copied(&mut lab, "the preset of another program was pasted", "toon");
 }
 
 #[test]

@@ -343,8 +343,9 @@ fn exploding_and_turning_keeps_every_triangle_and_its_area() {
             position + stack.moved(corner, 0).offset
         });
         let turned = (moved[1] - moved[0]).cross(moved[2] - moved[0]);
+        // The text's sine is a polynomial, some 4e-9 off.
         assert!(
-            turned.distance(normal) < 1e-12 * normal.length().max(1e-3),
+            turned.distance(normal) < 1e-7 * normal.length().max(1e-3),
             "triangle {t}: its plane or its area changed"
         );
         let flight = moved.iter().sum::<DVec3>() / 3.0 - center;

@@ -172,7 +172,8 @@ fn every_look_shows_something_on_every_model() {
         )
         .expect("a scene");
         let failed = looks.par_iter().filter_map(|look| {
-            let from = preset_file::scene_bounds(&look.preset.scene, None).expect("a box");
+            let from = preset_file::scene_bounds(&look.preset.scene, look.preset.parts.up, None)
+                .expect("a box");
             let fit = look.fit_to(&own, [&from, &bare.bounds()], Some(&bare));
             let mut landed = look.landed_on(&own, fit.as_ref());
             landed.map_missing_parts(&bare);

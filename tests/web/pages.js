@@ -35,37 +35,50 @@ const line = async (id) => new OpenPreset(await text(`/presets/${id}.toml`), id)
 export async function links() {
   const preset = new OpenPreset(await text("/presets/facet.toml"), "facet");
   const bits = oracle_bits(preset.in_portable_bits());
-  await page("proof", `#${preset.line()};${bits.join("-")}`, async ({ says, find }) => {
-    await says(/every pixel is the oracle's/);
-    await says(/the same bits as the oracle's/, "#proof");
-    find("#oracle button").click();
-    await says(/This is the oracle's picture/, "#oracle");
+  const showsOracle = async ({ says, find }) => {
+    find("#oracle").click();
+    await says(/Show the device's picture/, "#oracle");
+    const early = find("#exact").hidden && "the oracle's picture is not shown";
+    find("#oracle").click();
+    return [early, !find("#exact").hidden && "the oracle's picture stays"];
+  };
+  await page("proof", `#${preset.line()};${bits.join("-")}`, async (shown) => {
+    const { className } = await shown.says(/This link, your device and the oracle agree, bit for bit/);
+    return [className !== "right" && "it does not look right", ...(await showsOracle(shown))];
   });
   const other = `${"0".repeat(16)}-${bits[1]}`;
   await page("other bits", `#${preset.line()};${other}`, async ({ says }) => {
-    const proof = await says(/triangle ids are not the oracle's/, "#proof");
-    return [proof.className !== "wrong" && "it looks right"];
+    const { className } = await says(/was changed.*its triangles are not the oracle's/);
+    return [className !== "wrong" && "it looks right"];
   });
-  await page("unproven", `#${await line("wobble")};${other}`, async ({ says }) => void (await says(/cannot be compared: .*strict/, "#proof")));
+  await page("unproven", `#${await line("wobble")};${other}`, async ({ says }) => void (await says(/cannot be compared: .*strict/)));
   for (const [name, address, words] of [
-    ["cut link", "#rasterlab1:AAAA", /cut off or garbled/],
+    ["cut link", "#rasterlab1:AAAA", /link is cut off/],
     ["strange link", "#other", /none of rasterlab's/],
-    ["cut bits", `#${preset.line()};12`, /bits behind the link's line/],
-    ["bad escapes", "#%E0%A4%A", /cut off or garbled/],
-    ["no preset", "?preset=nothing", /no preset "nothing"/],
+    ["cut bits", `#${preset.line()};12`, /link is cut off/],
+    ["bad escapes", "#%E0%A4%A", /link is cut off/],
+    ["no preset", "?preset=facett", /no preset "facett"/],
   ]) {
-    await page(name, address, async ({ says }) => [(await says(words)).className !== "wrong" && "it looks right"]);
+    await page(name, address, async ({ says, find }) => {
+      const { className } = await says(words);
+      await until(() => find(".gallery a"), "the gallery leads on");
+      const leads = find(".gallery a").href;
+      return [className !== "wrong" && "it looks right", find(".save") && "it offers something to save", name === "no preset" && !/preset=facet$/.test(leads) && `it leads to ${leads}`];
+    });
   }
 }
 
 export async function addresses() {
-  const judged = async ({ says }) => void (await says(/every pixel is the oracle's/));
+  const judged = async ({ says }) => void (await says(/^The oracle agrees with/));
   await page("model", "?model=models/three.gltf", async (shown) => {
     await judged(shown);
-    shown.find("#oracle button").click();
-    await shown.says(/This is the oracle's picture/, "#oracle");
+    shown.find("#oracle").click();
+    await shown.says(/Show the device's picture/, "#oracle");
   });
-  await page("look on a model", "?preset=toon&model=/models/three.gltf", async ({ says }) => void (await says(/ on three: every pixel is the oracle's/)));
+  await page("look on a model", "?preset=toon&model=/models/three.gltf", async (shown) => {
+    await judged(shown);
+    await shown.says(/ on three$/, "#name");
+  });
   await page("preset at an address", "?preset=presets/facet.toml", judged);
   const elsewhere = `http://127.0.0.1:${location.port}`;
   await page("model of another site", `?model=${elsewhere}/open/three.gltf`, judged);
@@ -91,9 +104,9 @@ export async function brought() {
   const carried = new OpenPreset(own, "own").line();
   await page("brought code", `#${carried}`, async ({ says, find }) => {
     await says(/fn wash/, "#code");
-    const early = /drawn|oracle's/.test(find("#caption").textContent);
-    find("button").click();
-    await says(/every pixel is the oracle's/);
+    const early = /drawn|oracle/i.test(find("#caption").textContent);
+    find("#run").click();
+    await says(/^The oracle agrees with/);
     return [early && "it was drawn unasked", find("#code") && "the code stays"];
   });
 }
@@ -172,15 +185,14 @@ export async function written() {
 
 export async function troubles() {
   await page("no WebGPU", "", async ({ says, find }) => {
-    await says(/has no WebGPU.*Firefox/);
-    const pictures = [...find(".gallery").children];
-    await until(() => pictures.every(({ complete }) => complete), "the gallery");
-    return [pictures.length < 6 && "few pictures", ...pictures.filter(({ naturalWidth }) => !naturalWidth).map(({ alt }) => `no picture ${alt}`)];
+    await says(/has no WebGPU/);
+    await says(/Firefox.*This is the oracle's picture/, "#detail");
+    return [find("#strip").children.length < 6 && "few pictures", find("#exact").hidden && "no picture of the oracle"];
   }, "Object.defineProperty(navigator, 'gpu', { value: undefined })");
   const lose = (most) => `let losses = 0; const open = GPUAdapter.prototype.requestDevice; GPUAdapter.prototype.requestDevice = async function (...all) { const device = await open.apply(this, all); if (losses++ < ${most}) setTimeout(() => device.destroy(), 1); return device; };`;
   await page("lost device", "", async ({ says }) => {
     await says(/device was lost; another one is opened/);
-    await says(/every pixel is the oracle's/);
+    await says(/^The oracle agrees with/);
   }, lose(1));
   await page("device that is lost again and again", "", async ({ says, find }) => {
     await says(/lost again and again/);

@@ -298,6 +298,16 @@ impl GlassLayers {
         &self.layers[first..self.ends[pixel]]
     }
 
+    /// The nearest `most` per pixel.
+    pub fn nearest(&self, most: usize) -> Self {
+        let mut near = Self::default();
+        for (pixel, behind) in self.behind.iter().enumerate() {
+            near.layers.extend(self.at(pixel).iter().take(most));
+            near.end_pixel(*behind);
+        }
+        near
+    }
+
     /// Number of layers per pixel.
     pub fn counts(&self) -> Vec<u32> {
         (0..self.ends.len())

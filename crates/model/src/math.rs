@@ -152,10 +152,6 @@ pub fn cos_turns(turns: f64) -> f64 {
     libm::cos((turns - turns.round()) * std::f64::consts::TAU)
 }
 
-/// Bound of the error of `shaders/lib/angle.wgsl`, given its argument: the polynomial's 3.4e-9
-/// (Remez, degree 9 on a quarter turn) and ten roundings of terms whose magnitudes sum to 2.4.
-pub const SINE_ERROR: f64 = 24.0 / (1 << 23) as f64;
-
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -90,8 +90,11 @@ pub(super) fn draw_of<'a>(scene: &Scene, draws: &'a [Draw], id: u32) -> Option<&
 }
 
 /// The view as an adapter drew it: the grid, the origin of positions and the render scale are
-/// promises of its accuracy options, so the oracle adopts them.
+/// promises of its accuracy options, so the oracle adopts them. Positions that a far scene rounds as
+/// they are stored keep no promise: they are judged by those relative to the eye.
 pub fn drawn_view(view: &View, geometry: &Geometry) -> View {
-    view.scaled(geometry.scale)
-        .with_grid(geometry.subpixel_bits, geometry.is_relative)
+    view.scaled(geometry.scale).with_grid(
+        geometry.subpixel_bits,
+        geometry.is_relative || view.precision.is_relative,
+    )
 }

@@ -12,7 +12,7 @@ use wasm_bindgen::prelude::wasm_bindgen;
 
 pub use live::Live;
 pub use open_preset::{OpenPreset, can_share_rows, oracle_bits, oracle_rows};
-pub use page::{Page, Picture};
+pub use page::{Judged, Page, Picture};
 
 /// The words and place of a panic go to the console, and to `rasterlabPanic` of the page, which shows
 /// them.

@@ -1,4 +1,4 @@
-//! Pictures that move: drawn on the device and shown on a canvas without being read back.
+//! Pictures that move: drawn on the device, and shown on a canvas without being read back or counted.
 
 use std::sync::Arc;
 
@@ -28,32 +28,37 @@ enum Painter {
     Hardware(Option<Box<Hardware>>),
 }
 
-/// A canvas and what is drawn on it.
+/// What draws frames, and the canvas that shows them if there is one.
 #[wasm_bindgen]
 pub struct Live {
     gpu: Arc<Gpu>,
-    canvas: Canvas,
+    canvas: Option<Canvas>,
     painter: Painter,
 }
 
 #[wasm_bindgen]
 impl Live {
-    /// Our kernels on a canvas.
+    /// Our kernels, on a canvas if there is one.
     ///
     /// # Errors
     /// When the canvas gives no WebGPU surface.
     #[wasm_bindgen(constructor)]
-    pub fn new(page: &Page, canvas: HtmlCanvasElement) -> Result<Live, JsError> {
-        let renderer = Renderer::new(page.gpu.clone());
-        Self::with(page, canvas, Painter::Kernels(Box::new(renderer)))
+    pub fn new(page: &Page, canvas: Option<HtmlCanvasElement>) -> Result<Live, JsError> {
+        let renderer = Box::new(Renderer::new(page.gpu.clone()));
+        Ok(Self {
+            gpu: page.gpu.clone(),
+            canvas: canvas.map(Canvas::new).transpose()?,
+            painter: Painter::Kernels(renderer),
+        })
     }
 
-    /// The adapter's own rasterizer on a canvas.
-    ///
-    /// # Errors
-    /// As [`Live::new`].
-    pub fn hardware(page: &Page, canvas: HtmlCanvasElement) -> Result<Live, JsError> {
-        Self::with(page, canvas, Painter::Hardware(None))
+    /// The adapter's own rasterizer.
+    pub fn hardware(page: &Page) -> Live {
+        Self {
+            gpu: page.gpu.clone(),
+            canvas: None,
+            painter: Painter::Hardware(None),
+        }
     }
 
     /// Draws a frame, and shows it when it is finished.
@@ -62,7 +67,11 @@ impl Live {
     /// One sentence on what cannot be drawn here.
     pub async fn show(&mut self, open: &OpenPreset) -> Result<(), JsError> {
         self.draw(open, 1).await?;
-        self.present();
+        if let (Painter::Kernels(renderer), Some(canvas)) = (&self.painter, &mut self.canvas)
+            && let Some(picture) = renderer.texture()
+        {
+            canvas.show(&self.gpu, picture);
+        }
         self.faultless()
     }
 
@@ -103,15 +112,6 @@ impl Live {
 }
 
 impl Live {
-    fn with(page: &Page, canvas: HtmlCanvasElement, painter: Painter) -> Result<Live, JsError> {
-        let is_transparent = matches!(painter, Painter::Hardware(_));
-        Ok(Self {
-            gpu: page.gpu.clone(),
-            canvas: Canvas::new(canvas, is_transparent)?,
-            painter,
-        })
-    }
-
     fn faultless(&self) -> Result<(), JsError> {
         match self.gpu.take_error() {
             Some(error) => Err(JsError::new(&format!("the device reports {error}"))),
@@ -124,18 +124,6 @@ impl Live {
         match &mut self.painter {
             Painter::Kernels(renderer) => draw_kernels(renderer, open, frames).await,
             Painter::Hardware(hardware) => draw_hardware(&self.gpu, hardware, open, frames).await,
-        }
-    }
-
-    /// Shows what was drawn; nothing where the picture has no pixels.
-    fn present(&mut self) {
-        let picture = match &self.painter {
-            Painter::Kernels(renderer) => renderer.texture(),
-            // Where it draws nothing, the canvas shows its own background.
-            Painter::Hardware(hardware) => hardware.as_ref().map(|hardware| hardware.texture()),
-        };
-        if let Some(picture) = picture {
-            self.canvas.show(&self.gpu, picture);
         }
     }
 }

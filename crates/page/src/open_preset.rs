@@ -23,6 +23,7 @@ use rasterlab_oracle as oracle;
 use wasm_bindgen::prelude::{JsError, wasm_bindgen};
 
 /// A preset and its scene.
+#[derive(Clone)]
 #[wasm_bindgen]
 pub struct OpenPreset {
     pub(crate) file: PresetFile,
@@ -51,8 +52,9 @@ impl OpenPreset {
     /// # Errors
     /// One sentence on what is wrong with the model.
     pub fn of_model(path: &str) -> Result<OpenPreset, JsError> {
-        let file = model_file(path)?;
+        let mut file = model_file(path)?;
         let scene = preset_file::load_scene(&file.preset, None)?;
+        file.settle(&scene, true);
         Ok(Self { file, scene })
     }
 
@@ -64,7 +66,7 @@ impl OpenPreset {
         let (look, own) = (&self.file, model_file(path)?);
         let scene = preset_file::load_scene(&own.preset, None)?;
         let boxes = [
-            &preset_file::scene_bounds(&look.preset.scene, None)?,
+            &preset_file::scene_bounds(&look.preset.scene, look.preset.parts.up, None)?,
             &scene.content_bounds(),
         ];
         let fit = look.fit_to(&own, boxes, Some(&scene));
@@ -92,17 +94,24 @@ impl OpenPreset {
 
     /// The same preset, drawn so that its triangle ids and depth keys are the same bits everywhere.
     pub fn in_portable_bits(&self) -> OpenPreset {
-        let mut file = self.file.clone();
-        file.preset.accuracy = AccuracyRequest::portable_bits();
-        Self {
-            file,
-            scene: self.scene.clone(),
-        }
+        let mut same = self.clone();
+        same.file.preset.accuracy = AccuracyRequest::portable_bits();
+        same
+    }
+
+    /// The same preset, which another camera, size or time leaves as it is.
+    pub fn copy(&self) -> OpenPreset {
+        self.clone()
     }
 
     /// The name that is shown.
     pub fn name(&self) -> String {
         self.file.preset.name.clone()
+    }
+
+    /// What it shows, in one sentence; empty if its file does not say.
+    pub fn about(&self) -> String {
+        self.file.preset.about.clone()
     }
 
     /// The WGSL of the effects that the preset's own text contains, for the visitor to read before it
@@ -116,6 +125,13 @@ impl OpenPreset {
             .map(|source| format!("// {}.wgsl\n{}", source.stem, source.written))
             .collect::<Vec<_>>()
             .join("\n")
+    }
+
+    /// What the picture does not show as its files ask, a sentence each: parts of a model that are
+    /// lost or ignored, and what a look cannot take along to it.
+    pub fn notes(&self) -> Vec<String> {
+        let notes = self.scene.notes.iter().chain(&self.file.warnings);
+        notes.cloned().collect()
     }
 
     /// The text of a file that holds it.
@@ -186,7 +202,7 @@ impl OpenPreset {
     pub fn orbit(&mut self, aside_deg: f64, up_deg: f64, closer: f64) {
         let [width, height] = self.file.preset.output.size;
         let aspect = f64::from(width.max(1)) / f64::from(height.max(1));
-        let mut preset = self.file.preset.in_meters(&self.scene).into_owned();
+        let mut preset = self.file.preset.metric(&self.scene).into_owned();
         let mut camera = preset.camera_for(&self.scene, aspect);
         orbit(&mut camera, -aside_deg.to_radians(), up_deg.to_radians());
         zoom(&mut camera, closer);

@@ -92,12 +92,11 @@ impl Picture {
             .to_vec()
     }
 
-    /// Judges the picture with the oracle, on this thread. Returns the reasons why it is wrong, none
-    /// if it is right.
+    /// Judges the picture with the oracle, on this thread.
     ///
     /// # Errors
     /// One sentence on what the oracle cannot judge.
-    pub fn faults(&self, open: &OpenPreset) -> Result<Vec<String>, JsError> {
+    pub fn judge(&self, open: &OpenPreset) -> Result<Judged, JsError> {
         let preset = &open.file.preset;
         let (view, stack) = (
             preset.view(&open.scene, preset.output.size),
@@ -106,8 +105,21 @@ impl Picture {
         let verdict = oracle::judge(&open.scene, &view, &stack, &self.capture.picture())?;
         let budget = preset.test.clone().unwrap_or_default();
         let over = budget.pixels_over_tolerance(&verdict, &self.capture.frame);
-        Ok(budget.faults(&verdict.report, over, false))
+        Ok(Judged {
+            faults: budget.faults(&verdict.report, over, false),
+            allowed: over as f64,
+        })
     }
+}
+
+/// What the oracle found.
+#[wasm_bindgen(getter_with_clone)]
+pub struct Judged {
+    /// The reasons why the picture is wrong, none if it is right.
+    pub faults: Vec<String>,
+    /// Pixels whose color is farther from the oracle's than rounding explains, which the preset allows
+    /// if there are no faults.
+    pub allowed: f64,
 }
 
 impl Picture {

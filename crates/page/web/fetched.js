@@ -35,7 +35,7 @@ const megabytes = (bytes) => `${Math.ceil(bytes / 1e6)} MB`;
 /** The bytes at an address, at most `most`. `progress` is told how many are there, and how many there will be if the server says so. */
 async function bytesAt(url, most, progress) {
   const name = named(url) || url.host;
-  const tooLarge = () => new Error(`${name} is larger than ${megabytes(most)}, the most that a page fetches of it; save it and open it in the program`);
+  const tooLarge = () => new Error(`${name} is larger than ${megabytes(most)}, the most that a page fetches of it; save it and open it in the program on your computer`);
   let answer;
   try {
     answer = await fetch(url);

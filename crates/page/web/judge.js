@@ -1,6 +1,6 @@
 // A worker with an instance of the module, and where it draws a device, for itself: the page goes on meanwhile.
 //
-//   { ask: "verdict", text, id }           the preset drawn on a device and judged: { faults }
+//   { ask: "verdict", text, id }           the preset drawn on a device and judged: { faults, allowed }
 //   { ask: "rows", text, id, begin, end }  those rows of the oracle's picture: { colors }, RGBA
 //   { ask: "bits", text, id }              the hashes of the oracle's triangle ids and depth keys: { bits }
 //
@@ -10,7 +10,8 @@ import init, { OpenPreset, Page, give_file, oracle_bits, oracle_rows } from "./r
 const answers = {
   verdict: async (preset) => {
     const picture = await (await Page.open()).draw(preset);
-    return { faults: picture.faults(preset) };
+    const { faults, allowed } = picture.judge(preset);
+    return { faults, allowed };
   },
   rows: (preset, { begin, end }) => ({ colors: oracle_rows(preset, begin, end) }),
   bits: (preset) => ({ bits: oracle_bits(preset.in_portable_bits()) }),

@@ -1,4 +1,4 @@
-// A picture that lives: it turns with the pointer, comes closer with the wheel or two fingers, and plays.
+// A picture that lives: it turns with the pointer or the arrow keys, comes closer with the wheel, two fingers or + and -, and plays.
 import { Live } from "./rasterlab_page.js";
 import { again, device } from "./device.js";
 
@@ -6,21 +6,28 @@ const DEG_PER_PX = 0.4;
 /** A frame that takes longer is drawn with fewer pixels. */
 const SLOW_MS = 60;
 const MOST_PIXELS = 1600;
+/** So long after the last change a picture that was drawn with fewer pixels is drawn with all of them. */
+const REST_MS = 400;
+const KEY_DEG = 6;
 
-/** Shows `preset` on `canvas` for good, and returns when its first frame is there. `trouble` is told what fails later. */
-export async function alive(preset, canvas, trouble) {
+/** Shows `preset` on `canvas` for good, and returns when its first frame is there. `trouble` is told what fails later, `touched` when
+ * another picture begins. In a page that scrolls (`isAlone` is false) the wheel is the picture's while that has the focus. */
+export async function alive(preset, canvas, { trouble, touched = () => {}, isAlone = true }) {
   let [page, live] = [];
   const [width, height] = preset.size();
-  let [scale, plays, isWanted, before] = [1, false, false, 0];
+  let size = [];
+  let [scale, plays, isWanted, before, restsAt] = [1, false, false, 0, Infinity];
   // What the visitor does is done between frames: the module must not be called while it draws.
   const waiting = [];
 
-  function fit() {
-    const pixels = Math.min(MOST_PIXELS, Math.max(innerWidth, (innerHeight * width) / height) * devicePixelRatio) * scale;
+  function fit(scale) {
+    const { width: wide, height: high } = canvas.getBoundingClientRect();
+    const pixels = Math.min(MOST_PIXELS, Math.min(wide, (high * width) / height) * devicePixelRatio) * scale;
     const fitted = [Math.max(16, Math.round(pixels)), Math.max(12, Math.round((pixels * height) / width))];
-    if (fitted[0] === canvas.width && fitted[1] === canvas.height) return;
-    [canvas.width, canvas.height] = fitted;
-    preset.resize(...fitted);
+    if (fitted[0] === size[0] && fitted[1] === size[1]) return;
+    // The canvas has its old pixels until the frame of this size is there.
+    size = fitted;
+    preset.resize(...size);
   }
 
   async function draw() {
@@ -36,11 +43,8 @@ export async function alive(preset, canvas, trouble) {
     // Until the browser takes the frame, the canvas can be read.
     canvas.dispatchEvent(new Event("shown"));
     const ms = performance.now() - began;
-    if (before && ms > SLOW_MS && scale > 0.25) {
-      scale *= 0.7;
-      fit();
-      isWanted = true;
-    }
+    // A picture that stands still keeps its full resolution.
+    if (before && ms > SLOW_MS && scale > 0.25 && restsAt !== Infinity) scale *= 0.7;
     before = ms;
   }
 
@@ -48,26 +52,31 @@ export async function alive(preset, canvas, trouble) {
   function next(now) {
     const passed = Math.min(0.25, (now - last) / 1000);
     last = now;
-    isWanted ||= waiting.length > 0 || page.is_lost();
-    waiting.splice(0).forEach((change) => change());
-    if (plays) {
-      plays = preset.play(passed);
-      isWanted = true;
+    isWanted ||= page.is_lost();
+    if (waiting.length || plays) {
+      [restsAt, isWanted] = [now + REST_MS, true];
+      fit(scale);
+      touched();
+    } else if (now > restsAt) {
+      [restsAt, isWanted] = [Infinity, true];
+      fit(1);
     }
+    waiting.splice(0).forEach((change) => change());
+    if (plays) plays = preset.play(passed);
     if (isWanted) frame().then(() => requestAnimationFrame(next), trouble);
     else requestAnimationFrame(next);
   }
 
-  controls(canvas, (...turn) => waiting.push(() => preset.orbit(...turn)));
-  addEventListener("resize", () => waiting.push(fit));
-  if (preset.is_moving()) playButton(() => (plays = !plays));
-  fit();
+  controls(canvas, isAlone, (...turn) => waiting.push(() => preset.orbit(...turn)));
+  addEventListener("resize", () => waiting.push(() => {}));
+  if (preset.is_moving()) playButton(canvas, () => (plays = !plays));
+  fit(1);
   await frame();
   requestAnimationFrame(next);
 }
 
-/** A button, and the space key, that plays and pauses. */
-function playButton(toggle) {
+/** A button, and the space key where nothing else takes it, that plays and pauses. */
+function playButton(canvas, toggle) {
   const play = document.createElement("button");
   [play.id, play.textContent] = ["play", "▶"];
   play.setAttribute("aria-label", "Play");
@@ -78,22 +87,32 @@ function playButton(toggle) {
   };
   play.onclick = press;
   addEventListener("keydown", (event) => {
-    if (event.key !== " " || event.target === play) return;
+    if (event.key !== " " || (event.target !== canvas && event.target !== document.body)) return;
     event.preventDefault();
     press();
   });
-  document.querySelector("main").append(play);
+  canvas.after(play);
 }
 
 /** Tells `orbit` angles in degrees and the factor of the distance. */
-function controls(canvas, orbit) {
+function controls(canvas, isAlone, orbit) {
+  const keys = { ArrowLeft: [-KEY_DEG, 0, 1], ArrowRight: [KEY_DEG, 0, 1], ArrowUp: [0, KEY_DEG, 1], ArrowDown: [0, -KEY_DEG, 1], "+": [0, 0, 0.9], "=": [0, 0, 0.9], "-": [0, 0, 1 / 0.9] };
+  canvas.tabIndex = 0;
+  canvas.addEventListener("keydown", (event) => {
+    const turn = !event.ctrlKey && !event.metaKey && !event.altKey && keys[event.key];
+    if (!turn) return;
+    event.preventDefault();
+    orbit(...turn);
+  });
   const fingers = new Map();
   const spread = () => {
     const [a, b] = [...fingers.values()];
     return Math.hypot(a.x - b.x, a.y - b.y) || 1;
   };
-  canvas.style.touchAction = "none";
+  // A finger that moves up or down scrolls a page that can be scrolled.
+  canvas.style.touchAction = isAlone ? "none" : "pan-y";
   canvas.addEventListener("pointerdown", (event) => {
+    canvas.focus({ preventScroll: true });
     canvas.setPointerCapture(event.pointerId);
     fingers.set(event.pointerId, { x: event.clientX, y: event.clientY });
   });
@@ -112,6 +131,7 @@ function controls(canvas, orbit) {
   canvas.addEventListener(
     "wheel",
     (event) => {
+      if (!isAlone && document.activeElement !== canvas) return;
       event.preventDefault();
       orbit(0, 0, Math.exp(Math.sign(event.deltaY) * Math.min(Math.abs(event.deltaY), 100) * 0.0015));
     },

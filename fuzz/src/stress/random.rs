@@ -38,6 +38,13 @@ const MAX_PARTICLES: f64 = 5_000.0;
 /// The scene where a random one has too many triangles several times.
 const SMALL_SCENE: &str = "teapot?tess=4";
 
+/// Longest side of a picture of a few pixels.
+const MAX_TINY_SIDE: i32 = 9;
+/// Latest time of a clock, seconds.
+const LATEST_S: f64 = 86_400.0;
+/// What tells the turns of [`stretch`] from the others of a seed.
+const STRETCH_SEED: u32 = 0x5eed_0004;
+
 /// Which values random parameters take.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Values {
@@ -273,6 +280,78 @@ fn camera(rng: &mut Rng, bounds: &Bounds) -> Camera {
     }
 }
 
+/// What hardly any scene and camera of [`preset`] have, each by turns of its own, so that seeds
+/// keep what else they draw: pictures of a few pixels, cameras far away, chains of image effects,
+/// glass, late clocks, scopes and keyframes.
+fn stretch(preset: &mut Preset, scene: &Scene, seed: u32) {
+    let mut rng = Rng(hash(seed ^ STRETCH_SEED));
+    let rng = &mut rng;
+    if rng.one_in(6) {
+        let side = |rng: &mut Rng| rng.between(1, MAX_TINY_SIDE + 1) as u32;
+        let longer = rng.between(0, 3) as usize;
+        preset.output.size = [side(rng), side(rng)];
+        // One side in three pictures stays narrower than a workgroup while the other is not.
+        if let Some(side) = preset.output.size.get_mut(longer) {
+            *side *= 16;
+        }
+    }
+    if rng.one_in(8) && !scene.bounds().is_empty() {
+        preset.camera = Some(far_camera(rng, &scene.bounds()));
+    }
+    let mut added: Vec<Arc<Effect>> = Vec::new();
+    if rng.one_in(4) {
+        let passes = EFFECTS
+            .iter()
+            .filter(|effect| effect.hooks.passes.is_some());
+        let passes: Vec<_> = passes.cloned().collect();
+        added.extend((0..rng.between(4, 8)).map(|_| rng.pick(&passes)));
+    }
+    if rng.one_in(8) {
+        added.extend(Effect::find("glass").cloned());
+    }
+    for effect in added {
+        if preset.stack.get(&effect.name).is_none() && preset.stack.conflict_with(&effect).is_none()
+        {
+            shake(rng, preset.stack.enable(&effect), Values::Allowed);
+        }
+    }
+    if rng.one_in(6) {
+        limit_an_effect(rng, &mut preset.stack, scene);
+    }
+    if rng.one_in(6) {
+        animate(rng, preset);
+    }
+    // Particles fly from the first second on, so they would take minutes.
+    if rng.one_in(8) && preset.stack.get("particles").is_none() {
+        preset.clock.time_s = rng.magnitude([0.0, LATEST_S]);
+    }
+}
+
+/// A camera 10³ to 10⁷ m away, which the scene fills the picture of.
+fn far_camera(rng: &mut Rng, bounds: &Bounds) -> Camera {
+    let (radius, distance) = (bounds.radius().max(1e-3), rng.magnitude([1e3, 1e7]));
+    let projection = if rng.one_in(2) {
+        Projection::Orthographic {
+            height_m: radius * rng.real(0.5, 3.0),
+        }
+    } else {
+        let least = Setting::find("camera.fov_y_deg")
+            .expect("a setting")
+            .param
+            .hard[0];
+        let fitting = (2.0 * radius / distance).atan().to_degrees() * rng.real(1.0, 3.0);
+        Projection::Perspective {
+            fov_y_deg: fitting.max(least),
+        }
+    };
+    Camera {
+        eye: bounds.center() - rng.direction() * distance,
+        target: bounds.center(),
+        projection,
+        ..Camera::default()
+    }
+}
+
 /// The preset of `seed` with these effects among its own: each replaces its rivals, and takes
 /// random values where the preset has it not.
 pub fn preset_with(seed: u32, effects: &[Arc<Effect>]) -> Preset {
@@ -374,6 +453,7 @@ pub fn preset(seed: u32) -> Preset {
     if rng.one_in(8) {
         preset.accuracy.tier = rng.pick(&Tier::ALL);
     }
+    stretch(&mut preset, &scene, seed);
     preset
 }
 
@@ -509,6 +589,35 @@ mod tests {
             assert!(rivals.count() <= asked.len() + 1, "{seed}");
         }
         assert_eq!(preset_with(9, &[]), preset(9));
+    }
+
+    #[test]
+    fn seeds_draw_what_is_rare_in_files_of_people() {
+        type Kind = fn(&Preset) -> bool;
+        let kinds: [(&str, Kind); 5] = [
+            ("9 pixels a side", |p| {
+                p.output.size.iter().all(|side| *side <= 9)
+            }),
+            ("1 pixel of many", |p| {
+                p.output.size.contains(&1) && p.output.size.iter().any(|side| *side > 15)
+            }),
+            ("10⁵ m away", |p| {
+                p.camera
+                    .as_ref()
+                    .is_some_and(|camera| camera.eye.length() > 1e5)
+            }),
+            ("glass with four image effects", |p| {
+                let passes = p.stack.each(|hooks| hooks.passes.as_ref()).count();
+                passes > 3 && p.stack.get("glass").is_some()
+            }),
+            ("an hour", |p| p.clock.time_s > 3600.0),
+        ];
+        for (what, is_one) in kinds {
+            assert!(
+                (0..2_000).map(preset).any(|preset| is_one(&preset)),
+                "{what}"
+            );
+        }
     }
 
     #[test]

@@ -54,7 +54,7 @@ fn strict_rows(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     }
     rows.dedup();
     check!(
-        pictures > 100,
+        pictures > 40,
         "only {pictures} pictures have a strict option"
     );
     let hash = crate::math::fnv1a(&hashes);

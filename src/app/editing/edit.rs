@@ -166,13 +166,17 @@ impl Session {
         };
         let preset = self.shown_preset();
         // What is framed turns with the scene's spin.
-        let turn = preset.view(scene, [1, 1]).scene_state.world_from_scene;
+        let state = preset.view(scene, [1, 1]).scene_state;
         let points: Vec<DVec3> = preset
             .framing_points(scene)
             .into_iter()
-            .map(|point| turn.transform_point3(point))
+            .map(|point| state.world_from_scene.transform_point3(point) + state.origin)
             .collect();
-        camera_moves::framing(camera, &points, super::session::aspect(preset.output.size))
+        camera_moves::framing(
+            camera,
+            &points,
+            preset.frame(super::session::aspect(preset.output.size)),
+        )
     }
 
     /// Gives every parameter of the enabled effects that is neither locked nor animated a random

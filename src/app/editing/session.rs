@@ -51,6 +51,8 @@ pub struct Session {
     /// Every preset that was opened or saved since the start, as its file has it.
     files: HashMap<FileId, PresetFile>,
     pub scenes: SceneLoader,
+    /// The user opened a preset since the start.
+    pub chose_look: bool,
     /// Names of the effects that are hidden: a viewing aid, not saved.
     pub muted: BTreeSet<String>,
     pub playback: Playback,
@@ -64,6 +66,7 @@ impl Session {
             files: HashMap::from([(FileId::of(&preset_file), preset_file.clone())]),
             preset_file,
             scenes: SceneLoader::default(),
+            chose_look: false,
             muted: BTreeSet::new(),
             playback: Playback::default(),
             trail: Trail::default(),
@@ -172,11 +175,7 @@ impl Session {
             .chain([&mut self.preset_file])
             .filter_map(|landed| landed.look.as_mut());
         for look in landed.filter(|look| look.id == before.id && look.path == before.path) {
-            *look = Look {
-                id: after.id.clone(),
-                path: after.path.clone(),
-                title: after.title().to_owned(),
-            };
+            *look = Look::of(&after);
         }
         if FileId::of(&self.preset_file) == *before {
             let mut preset = std::mem::take(&mut self.preset_file.preset);
@@ -188,8 +187,12 @@ impl Session {
     }
 
     /// True if the preset differs from its file in more than the camera, which is moved only to
-    /// look. A preset without a file does not until it is edited.
+    /// look. A preset without a file does not until it is edited, unless it was pasted: then no file
+    /// has it.
     pub fn is_modified(&self) -> bool {
+        if self.preset_file.is_pasted() {
+            return true;
+        }
         let open = &self.preset_file.preset;
         let Some(as_opened) = self.files.get(&FileId::of(&self.preset_file)) else {
             return true;
@@ -199,6 +202,13 @@ impl Session {
                 camera: as_opened.preset.camera,
                 ..open.clone()
             } != as_opened.preset
+    }
+
+    /// Did the user choose the look that is shown, which stays when another model is opened: a preset
+    /// since the start, or other effects than it was opened with?
+    pub fn has_chosen_look(&self) -> bool {
+        self.chose_look && !self.preset_file.is_plain()
+            || self.as_filed().preset.stack != self.preset().stack
     }
 
     pub fn undo_state(&self) -> UndoState {

@@ -364,6 +364,24 @@ pub fn export(app: &mut App, path: PathBuf, size: [u32; 2]) {
         .export(app.state.picture.screen.gpu.clone(), inputs, exported, path);
 }
 
+/// Saves the pictures of the sweep as one.
+pub fn save_sheet(app: &mut App, path: PathBuf) {
+    let Some(sheet) = app.panels.sweep.sheet(&app.state.session.preset_file.id) else {
+        return app.notify(Level::Error, "There is no sheet to save yet");
+    };
+    let saved = make_folder_of(&path).and_then(|()| {
+        let png = preset_file::png_bytes(sheet.color(), sheet.size());
+        let png = png.map_err(|error| error.to_string())?;
+        // The dialog has asked before it replaces a file.
+        preset_file::write_atomically(&path, &png, Existing::Replace)
+            .map_err(|error| error.to_string())
+    });
+    match saved {
+        Ok(()) => app.notify(Level::Info, format!("Saved {}", path.display())),
+        Err(reason) => save_failed(app, Purpose::Sheet, &path, reason),
+    }
+}
+
 /// Draws a film as the window shows the preset: without muted effects.
 pub fn export_film(app: &mut App, request: film::Request, progress: Arc<film::Progress>) {
     // A folder that cannot be made is named by what is written into it.

@@ -10,6 +10,8 @@ pub enum Purpose {
     Open,
     SaveAs,
     Export,
+    /// The contact sheet of a sweep.
+    Sheet,
 }
 
 /// Whose changes of a preset stay.

@@ -25,14 +25,14 @@ pub fn star(app: &mut App, kind: Starred, name: &str, is_on: bool) {
 
 /// Uses the name that was asked for.
 pub fn use_name(app: &mut App, naming: Naming, name: String) {
+    let name = name.trim().to_owned();
     let outcome = match &naming {
         Naming::Preset { path, .. } => rename(app, path, &name),
         Naming::Values(effect) => save_values(&mut app.state, effect, &name),
         Naming::Bookmark(from) => {
-            let to = name.trim();
-            let edit = Edit::RenameBookmark(from.clone(), to.to_owned());
+            let edit = Edit::RenameBookmark(from.clone(), name.clone());
             let renamed = app.state.session.edit(edit);
-            renamed.map(|()| format!("Renamed to {to}"))
+            renamed.map(|()| format!("Renamed to {name}"))
         }
     };
     match outcome {

@@ -16,12 +16,13 @@ use super::{
 use crate::{
     app::{
         App,
+        editing::history::History,
         settings::last_session::Restored,
         shell::{log::Level, state::State},
     },
     preset::{Output, SceneSource},
-    preset_file::PresetFile,
-    scene::{Bounds, Scene},
+    preset_file::{self, PresetFile},
+    scene::{Bounds, Scene, UpAxis},
 };
 
 /// How what a person names is opened. A picture holds a whole state, so it brings its scene.
@@ -108,12 +109,21 @@ fn go_on(app: &mut App) {
         app.state.files.opening.waiting = Some(request);
         return;
     }
+    if request.manner == Manner::Scene
+        && matches!(key.source, SceneSource::File(_))
+        && !app.state.session.has_chosen_look()
+    {
+        return finish_plain(app, *request.opened, request.said);
+    }
     let (look, own) = match request.manner {
-        Manner::WithScene => return finish(app, *request.opened, request.said),
+        Manner::WithScene => {
+            app.state.session.chose_look = true;
+            return finish(app, *request.opened, request.said);
+        }
         Manner::Look => (&*request.opened, &app.state.session.preset_file),
         Manner::Scene => (&app.state.session.preset_file, &*request.opened),
     };
-    let sources = [look.scene_source(), own.scene_source()];
+    let sources = [look, own].map(|of| (of.scene_source(), of.preset.parts.up));
     let mut boxes = [None; 2];
     if look.needs_fit() && look.outside_model.is_none() {
         for (source, found) in sources.iter().zip(&mut boxes) {
@@ -139,7 +149,7 @@ fn go_on(app: &mut App) {
 }
 
 /// The box of a scene: none if it is not known, none in it if the scene cannot be loaded.
-fn bounds(state: &State, source: &SceneSource) -> Option<Option<Bounds>> {
+fn bounds(state: &State, source: &(SceneSource, UpAxis)) -> Option<Option<Bounds>> {
     state
         .session
         .scenes
@@ -186,6 +196,7 @@ fn land(app: &mut App, request: Request, boxes: Option<(Bounds, Bounds)>) {
     };
     if let Some(scene) = &own {
         landed.map_missing_parts(scene);
+        landed.settle(scene, true);
     }
     if looks.needs_fit() && fit.is_none() {
         let text = format!(
@@ -224,6 +235,7 @@ fn land(app: &mut App, request: Request, boxes: Option<(Bounds, Bounds)>) {
         ),
     };
     if manner == Manner::Look {
+        app.state.session.chose_look = true;
         // The menu opens it with its scene.
         app.state.session.remember(*opened);
     }
@@ -235,6 +247,35 @@ fn without_clip(look: &PresetFile) -> PresetFile {
     let mut look = look.clone();
     look.preset.playback.clip.clear();
     look
+}
+
+/// Puts the plain look on the scene that is shown.
+pub fn show_plain(app: &mut App) {
+    app.state.files.opening.waiting = Some(Request {
+        opened: preset_file::plain().clone().into(),
+        manner: Manner::Look,
+        said: String::new(),
+        loading: None,
+    });
+    go_on(app);
+}
+
+/// Begins a preset of the scene that is shown, in the plain look.
+pub fn begin_new(app: &mut App) {
+    let open = &app.state.session.preset_file;
+    let mut new = PresetFile::of_scene(&open.scene_name(), open.scene_source());
+    new.preset.parts.up = open.preset.parts.up;
+    if let Some(scene) = app.state.session.scene() {
+        new.settle(scene, true);
+    }
+    let said = format!("A new preset of {}", new.title());
+    finish_plain(app, new, said);
+}
+
+/// Opens a scene in the plain look. The frame of the picture stays.
+fn finish_plain(app: &mut App, mut opened: PresetFile, said: String) {
+    opened.preset.output.size = app.state.session.preset().output.size;
+    finish(app, opened, said);
 }
 
 fn finish(app: &mut App, opened: PresetFile, said: String) {
@@ -276,12 +317,41 @@ pub fn cancel_loading(app: &mut App) {
 }
 
 /// The box of a scene has been found, or cannot be: opens what waits for it.
-pub fn take_bounds(app: &mut App, source: SceneSource, bounds: Result<Bounds, String>) {
+pub fn take_bounds(app: &mut App, source: (SceneSource, UpAxis), bounds: Result<Bounds, String>) {
     if let Err(error) = &bounds {
         app.state.log.add(Level::Warning, error.clone());
     }
     app.state.files.opening.measured(source, bounds.ok());
     go_on(app);
+}
+
+/// Lets what waits for a scene, or was opened with it, take from it what it leaves open. Returns the
+/// key of the scene from then on.
+fn settle(state: &mut State, key: SceneKey, scene: &Scene) -> SceneKey {
+    state.session.scenes.abandon(&key);
+    let is_of = |file: &PresetFile| SceneKey::of(file) == key;
+    if let Some(request) = &mut state.files.opening.waiting
+        && request.loading.as_ref() == Some(&key)
+        && is_of(&request.opened)
+    {
+        request.opened.settle(scene, true);
+        if scene.glare().is_some() && request.opened.is_plain() {
+            request.said += "; its lights, which are too strong for a picture, are dimmed";
+        }
+        let settled = SceneKey::of(&request.opened);
+        request.loading = Some(settled.clone());
+        return settled;
+    }
+    let session = &mut state.session;
+    if !is_of(&session.preset_file) || session.is_modified() {
+        return key;
+    }
+    session.preset_file.settle(scene, true);
+    session.remember(session.preset_file.clone());
+    if !state.history.can_undo() {
+        state.history = History::new(session.undo_state());
+    }
+    SceneKey::of(&session.preset_file)
 }
 
 /// Takes a scene that has loaded, or why it cannot be.
@@ -293,6 +363,7 @@ pub fn take_scene(app: &mut App, key: SceneKey, loaded: Result<Arc<Scene>, Strin
                 app.state.log.add(Level::Warning, text);
             }
             model_reloaded(&mut app.state, &key, Ok(()));
+            let key = settle(&mut app.state, key, &scene);
             app.state
                 .session
                 .scenes

@@ -1,7 +1,11 @@
 //! What is being opened: a preset that waits for its model, or for the boxes of scenes.
 
 use super::{command::Manner, scene_loader::SceneKey};
-use crate::{preset::SceneSource, preset_file::PresetFile, scene::Bounds};
+use crate::{
+    preset::SceneSource,
+    preset_file::PresetFile,
+    scene::{Bounds, UpAxis},
+};
 
 /// What was chosen and waits.
 pub struct Request {
@@ -20,9 +24,9 @@ pub struct Opening {
     /// What is said when this scene is shown.
     pub announced: Option<(SceneKey, String)>,
     /// Boxes of scenes that are not in memory; none for a scene that cannot be loaded.
-    boxes: Vec<(SceneSource, Option<Bounds>)>,
+    boxes: Vec<((SceneSource, UpAxis), Option<Bounds>)>,
     /// Scenes whose boxes are being found.
-    measuring: Vec<SceneSource>,
+    measuring: Vec<(SceneSource, UpAxis)>,
 }
 
 impl Opening {
@@ -31,7 +35,7 @@ impl Opening {
     }
 
     /// The box of a scene, if it was found; none in it for a scene that cannot be loaded.
-    pub fn bounds(&self, source: &SceneSource) -> Option<Option<Bounds>> {
+    pub fn bounds(&self, source: &(SceneSource, UpAxis)) -> Option<Option<Bounds>> {
         self.boxes
             .iter()
             .find(|(known, _)| known == source)
@@ -39,7 +43,7 @@ impl Opening {
     }
 
     /// Notes that the box of a scene is being found. Returns false if it is already.
-    pub fn start_measuring(&mut self, source: &SceneSource) -> bool {
+    pub fn start_measuring(&mut self, source: &(SceneSource, UpAxis)) -> bool {
         let is_new = !self.measuring.contains(source);
         if is_new {
             self.measuring.push(source.clone());
@@ -48,7 +52,7 @@ impl Opening {
     }
 
     /// Keeps the box of a scene.
-    pub fn measured(&mut self, source: SceneSource, bounds: Option<Bounds>) {
+    pub fn measured(&mut self, source: (SceneSource, UpAxis), bounds: Option<Bounds>) {
         self.measuring.retain(|other| *other != source);
         self.boxes.push((source, bounds));
     }
@@ -56,6 +60,6 @@ impl Opening {
     /// Forgets the boxes of models, since a file has changed.
     pub fn forget_models(&mut self) {
         self.boxes
-            .retain(|(source, _)| matches!(source, SceneSource::Builtin(_)));
+            .retain(|((source, _), _)| matches!(source, SceneSource::Builtin(_)));
     }
 }

@@ -39,7 +39,7 @@ pub fn take_changes(app: &mut App) {
             Change::Shaders => shaders_changed(app),
         }
     }
-    enable_waiting(&mut app.state);
+    enable_waiting(app);
 }
 
 /// What is watched for the open preset.
@@ -330,8 +330,9 @@ fn warn_of_other_file(state: &mut State) {
     }
 }
 
-/// Enables the effect of a new or dropped file when it has been read.
-fn enable_waiting(state: &mut State) {
+/// Enables the effect of a new or dropped file when it has been read, and shows its sliders.
+fn enable_waiting(app: &mut App) {
+    let state = &mut app.state;
     let Some(Waiting { path, replaces }) = &state.files.live.enable else {
         return;
     };
@@ -347,12 +348,14 @@ fn enable_waiting(state: &mut State) {
     };
     state.files.live.enable = None;
     state.history.close();
+    let name = effect.name.clone();
     let edit = match replaces.filter(|old| state.session.preset().stack.get(&old.name).is_some()) {
         Some(old) => Edit::Rebind(old, effect),
         None => Edit::Enable(effect),
     };
-    if let Err(error) = state.session.edit(edit) {
-        state.notify(Level::Error, error);
+    match state.session.edit(edit) {
+        Ok(()) => app.reveal(name),
+        Err(error) => state.notify(Level::Error, error),
     }
 }
 

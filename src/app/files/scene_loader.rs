@@ -6,7 +6,7 @@ use std::{collections::VecDeque, path::PathBuf, sync::Arc};
 use crate::{
     preset::SceneSource,
     preset_file::PresetFile,
-    scene::{Bounds, Ground, Scene, memory::MemoryBudget, parts::ShownParts},
+    scene::{Bounds, Ground, Scene, UpAxis, memory::MemoryBudget, parts::ShownParts},
     work::{Progress, Work},
 };
 
@@ -128,10 +128,10 @@ impl SceneLoader {
     }
 
     /// The box of a scene that is in memory, without ground and room.
-    pub fn bounds(&self, source: &SceneSource) -> Option<Bounds> {
+    pub fn bounds(&self, (source, up): &(SceneSource, UpAxis)) -> Option<Bounds> {
         let mut known = self.shown.iter().chain(&self.recent);
         known
-            .find(|(key, _)| key.source == *source)
+            .find(|(key, _)| key.source == *source && key.parts.up == *up)
             .map(|(_, scene)| scene.subject_bounds(None))
     }
 

@@ -25,7 +25,7 @@ pub fn extensions(purpose: Purpose) -> Vec<&'static str> {
             .chain(cfg!(target_arch = "wasm32").then_some("zip"))
             .collect(),
         Purpose::SaveAs => vec!["toml"],
-        Purpose::Export => vec!["png"],
+        Purpose::Export | Purpose::Sheet => vec!["png"],
     }
 }
 
@@ -33,7 +33,7 @@ const fn types_name(purpose: Purpose) -> &'static str {
     match purpose {
         Purpose::Open => "Presets, models, pictures, effects",
         Purpose::SaveAs => "Presets",
-        Purpose::Export => "Pictures",
+        Purpose::Export | Purpose::Sheet => "Pictures",
     }
 }
 

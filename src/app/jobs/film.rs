@@ -140,7 +140,10 @@ impl Request {
         let times = Times {
             from_s: Some(self.range_s[0]),
             to_s: Some(self.range_s[1]),
-            fps: self.fps,
+            fps: match self.format {
+                Format::Video(container) => container.fps(self.fps),
+                _ => self.fps,
+            },
             frames: [None; 2],
         };
         Schedule::new(&times, clock, "")
@@ -333,7 +336,7 @@ pub async fn export(
     let mut end = None;
     if let Some(look) = &request.from_look_of {
         let [own, look] =
-            [&preset_file.preset, &**look].map(|preset| preset.in_meters(&scene).into_owned());
+            [&preset_file.preset, &**look].map(|preset| preset.metric(&scene).into_owned());
         end = Some(preset_file.clone());
         preset_file.preset = Preset {
             accuracy: own.accuracy,

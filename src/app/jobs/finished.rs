@@ -46,7 +46,7 @@ pub fn take_effect_picture(app: &mut App, effect: &str, image: Option<ColorImage
     effects.picture_arrived(&app.ctx, effect, image);
 }
 
-/// Takes the f32 errors of the user's effects in a picture; none if the measurement was canceled.
+/// Takes the f32 errors of the effects in a picture; none if the measurement was canceled.
 pub fn take_precision(app: &mut App, of: Inputs, measured: Result<Option<Box<Measured>>, String>) {
     if let Some(error) = app.state.picture.precision.take_errors(of, measured) {
         app.state.log.add(Level::Error, error);

@@ -136,7 +136,7 @@ impl Jobs {
         });
     }
 
-    /// Measures the f32 errors of the effects of files in `inputs`, which the preset says; on the
+    /// Measures the f32 errors of the effects in `inputs`, which the preset says; on the
     /// thread of the page where no preset does.
     pub fn measure_precision(
         &self,

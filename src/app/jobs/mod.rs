@@ -49,7 +49,7 @@ use crate::{
     oracle,
     preset::{AccuracyRequest, Preset, SceneSource},
     preset_file::{self, Existing, PresetFile, Provenance},
-    scene::{Scene, view::View},
+    scene::{Scene, UpAxis, view::View},
     shader::key::KernelKey,
     work::Work,
 };
@@ -164,12 +164,12 @@ impl Jobs {
     }
 
     /// Finds the box of a scene.
-    pub fn measure_scene(&self, source: SceneSource) {
+    pub fn measure_scene(&self, (source, up): (SceneSource, UpAxis)) {
         self.spawn("scene box", move || {
             let bounds = caught("measuring a scene", || {
-                preset_file::scene_bounds(&source, None).map_err(|e| e.to_string())
+                preset_file::scene_bounds(&source, up, None).map_err(|e| e.to_string())
             });
-            done(move |app| open::take_bounds(app, source, bounds))
+            done(move |app| open::take_bounds(app, (source, up), bounds))
         });
     }
 
@@ -572,7 +572,8 @@ fn land_look(look: &PresetFile, own: &PresetFile, scene: &Scene) -> Option<Prese
         true => look.fit_to(
             own,
             [
-                &preset_file::scene_bounds(&look.scene_source(), None).ok()?,
+                &preset_file::scene_bounds(&look.scene_source(), look.preset.parts.up, None)
+                    .ok()?,
                 &scene.content_bounds(),
             ],
             Some(scene),
@@ -583,6 +584,7 @@ fn land_look(look: &PresetFile, own: &PresetFile, scene: &Scene) -> Option<Prese
     // The whole model is shown, so that the picture stays right when the camera moves.
     landed.preset.camera = None;
     landed.map_missing_parts(scene);
+    landed.settle(scene, true);
     Some(landed)
 }
 

@@ -35,7 +35,7 @@ use crate::{
 };
 
 impl Jobs {
-    /// Measures the f32 errors of the user's effects with the oracle.
+    /// Measures the f32 errors of the effects with the oracle.
     pub fn measure_precision(&self, inputs: Inputs, cancelled: Arc<AtomicBool>) {
         self.spawn("precision", move || {
             let measure = || precision::measure(&inputs, &cancelled);

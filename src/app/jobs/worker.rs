@@ -58,7 +58,7 @@ pub enum Task {
     Judge,
     /// Draws its picture with the oracle, as RGBA.
     Picture,
-    /// Measures the f32 errors of the effects of files, as TOML.
+    /// Measures the f32 errors of the effects, as TOML.
     Precision,
     /// Finds the bits of its picture for a link.
     Bits,

@@ -11,7 +11,7 @@ use crate::{
         panels::inspector::rows::has_row,
         picture::anti_aliasing::{CHOICES, name},
         shell::action::{Action, actions},
-        widgets::theme::ThemeChoice,
+        widgets::{fields::allowed_text, theme::ThemeChoice},
     },
     effects::Effect,
     params::{Field, Param, Value},
@@ -155,7 +155,7 @@ fn of_setting(session: &Session, setting: &'static Setting) -> Option<Entry> {
         Some(_) if has_row(&path) => Choice::Reveal(path.clone()),
         _ => Choice::Refuse(format!(
             "{path} has no row; type its value, {}",
-            setting.allowed()
+            allowed_text(&setting.param)
         )),
     };
     Some(Entry::new(Kind::Setting, path, choice).with(detail, setting.doc.as_str()))

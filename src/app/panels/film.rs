@@ -357,7 +357,7 @@ impl Panel for FilmPanel {
                 let is_entered = self
                     .form
                     .as_mut()
-                    .is_some_and(|form| film_ui(ui, form, &clock, takes_focus));
+                    .is_some_and(|form| film_ui(ui, form, &clock, takes_focus, commands));
                 if before != self.form.as_ref().map(|form| form.request(false)) {
                     // What was agreed to, or failed, was another film.
                     self.failure = None;
@@ -369,7 +369,13 @@ impl Panel for FilmPanel {
 }
 
 /// Returns true if Enter was pressed in the path.
-fn film_ui(ui: &mut Ui, form: &mut Form, clock: &Clock, takes_focus: bool) -> bool {
+fn film_ui(
+    ui: &mut Ui,
+    form: &mut Form,
+    clock: &Clock,
+    takes_focus: bool,
+    commands: &Commands,
+) -> bool {
     let mut format = form.format;
     let formats = Format::here().map(|format| (format, format.name(), ""));
     if ui
@@ -388,11 +394,18 @@ fn film_ui(ui: &mut Ui, form: &mut Form, clock: &Clock, takes_focus: bool) -> bo
     if let Some(schedule) = &schedule {
         ui.add(Label::new(theme::weak(about(form, schedule))).truncate());
     }
+    if let Format::Video(container) = form.format
+        && let Some(note) = container.fps_note(form.fps)
+    {
+        theme::notice(ui, theme::amber(), &note);
+    }
     ui.add_space(theme::HALF);
     form_ui(ui, "film", |ui| {
         field_ui(ui, "Size", "", |ui| {
             let step = if form.format.needs_ffmpeg() { 2 } else { 1 };
-            size_ui(ui, "the film", &mut form.size, step, MAX_SIDE);
+            if let Some(said) = size_ui(ui, "the film", &mut form.size, step, MAX_SIDE) {
+                commands.notify(Level::Info, said);
+            }
         });
         field_ui(ui, "Frames per second", "", |ui| {
             let range = 1.0..=FilmSettings::MAX_FPS;
@@ -446,7 +459,7 @@ fn about(form: &Form, schedule: &crate::film::Schedule) -> String {
     let length = format!(
         "{frames} {}, {:.2} s",
         if frames == 1 { "frame" } else { "frames" },
-        frames as f64 / form.fps
+        frames as f64 / schedule.fps
     );
     let paths = form.request(false).frame_paths(schedule);
     let name = |path: &std::path::PathBuf| {

@@ -7,6 +7,7 @@ pub mod dialogs;
 pub mod effect_browser;
 pub mod extremes;
 pub mod film;
+pub mod help;
 pub mod inspector;
 pub mod log;
 pub mod naming;
@@ -25,10 +26,11 @@ pub mod trade;
 pub mod viewport;
 
 use self::{
-    code::CodePanel, dialogs::Dialogs, extremes::Extremes, film::FilmPanel, inspector::Inspector,
-    log::LogPanel, naming::NameDialog, palette::Palette, preset_browser::PresetBrowser,
-    randomize::RandomizePanel, review::ReviewPanel, settings::SettingsWindow, sweep::SweepPanel,
-    timeline::Timeline, timing::TimingPanel, topbar::TopBar, trade::TradePanel, viewport::Viewport,
+    code::CodePanel, dialogs::Dialogs, extremes::Extremes, film::FilmPanel, help::HelpWindow,
+    inspector::Inspector, log::LogPanel, naming::NameDialog, palette::Palette,
+    preset_browser::PresetBrowser, randomize::RandomizePanel, review::ReviewPanel,
+    settings::SettingsWindow, sweep::SweepPanel, timeline::Timeline, timing::TimingPanel,
+    topbar::TopBar, trade::TradePanel, viewport::Viewport,
 };
 use crate::preset_file::Folders;
 
@@ -49,6 +51,7 @@ pub struct Panels {
     pub randomize: RandomizePanel,
     pub sweep: SweepPanel,
     pub film: FilmPanel,
+    pub help: HelpWindow,
     pub palette: Palette,
     pub naming: NameDialog,
     pub code: CodePanel,
@@ -89,6 +92,7 @@ impl Panels {
             randomize: RandomizePanel::default(),
             sweep: SweepPanel::default(),
             film: FilmPanel::default(),
+            help: HelpWindow::default(),
             palette: Palette::default(),
             naming: NameDialog::default(),
             code: CodePanel::default(),

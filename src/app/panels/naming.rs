@@ -98,7 +98,11 @@ fn dialog_ui(ui: &mut Ui, open: &mut Open) -> Option<bool> {
     ui.label(theme::title(title));
     ui.label(theme::weak(about));
     ui.add_space(theme::HALF);
+    let before = open.name.clone();
     let is_entered = name_ui(ui, "Name", &mut open.name, &mut open.selects);
+    if open.name != before {
+        open.error = None;
+    }
     if let Some(error) = &open.error {
         theme::notice(ui, theme::amber(), error);
     }

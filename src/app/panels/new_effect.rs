@@ -86,7 +86,11 @@ pub fn fields_ui(ui: &mut Ui, dialog: &mut NewEffect) -> bool {
     ui.label(theme::title(title));
     ui.label(theme::weak(about));
     ui.add_space(theme::HALF);
+    let before = name.clone();
     let is_entered = name_ui(ui, "Name, for instance ink", name, selects);
+    if *name != before {
+        *error = None;
+    }
     if let Origin::Template(hook) = origin {
         for option in Hook::ALL {
             ui.radio_value(hook, option, self::about(option))

@@ -12,6 +12,7 @@ use crate::app::panels::panel::Panel;
 use crate::{
     app::{
         editing::apply::set_values,
+        files::{apply::ask_path, command::Purpose},
         picture::{
             cells::{self, CellOf, CellResult, Cells},
             screen::Inputs,
@@ -23,6 +24,7 @@ use crate::{
             theme,
         },
     },
+    contact_sheet::{ContactSheet, Picture},
     params::{Field, ValueType},
     preset::Preset,
     preset_file::sweep::{Cell, Sheet, Variation},
@@ -58,6 +60,8 @@ struct DrawnCell {
     /// Path and value of each parameter.
     values: Vec<(String, String)>,
     picture: Option<Result<egui::TextureHandle, String>>,
+    /// The same, for the sheet that is saved.
+    image: Option<egui::ColorImage>,
 }
 
 /// The window Sweep.
@@ -167,6 +171,7 @@ impl SweepPanel {
         let Some(drawn) = self.drawn.as_mut().filter(|drawn| drawn.number == number) else {
             return;
         };
+        let image = picture.as_ref().ok().cloned();
         let texture = picture.map(|image| {
             ctx.load_texture(
                 format!("sweep {index}"),
@@ -175,8 +180,27 @@ impl SweepPanel {
             )
         });
         if let Some(cell) = drawn.cells.get_mut(index) {
-            cell.picture = Some(texture);
+            (cell.picture, cell.image) = (Some(texture), image);
         }
+    }
+
+    /// The newest sheet as one picture; none before all of its pictures that can be drawn are.
+    pub fn sheet(&self, of: &str) -> Option<ContactSheet> {
+        let drawn = self.drawn.as_ref().filter(|_| !self.is_drawing())?;
+        let first = drawn.cells.iter().find_map(|cell| cell.image.as_ref())?;
+        let size = first.size.map(|side| side as u32);
+        let paths = drawn.cells.first()?.values.iter().map(|(path, _)| &**path);
+        let title = format!("{of}: {}", paths.collect::<Vec<_>>().join(", "));
+        let mut sheet = ContactSheet::new(&title, drawn.columns, drawn.cells.len(), size);
+        for (index, cell) in drawn.cells.iter().enumerate() {
+            let color = cell.image.iter().flat_map(|image| &image.pixels);
+            let picture = Picture {
+                caption: cell.caption.clone(),
+                color: color.map(|color| color.to_srgba_unmultiplied()).collect(),
+            };
+            sheet.put(index, &picture);
+        }
+        Some(sheet)
     }
 
     /// Begins to draw a sheet of the picture that is shown.
@@ -234,6 +258,7 @@ impl SweepPanel {
             caption: cell.caption(),
             values: cell.values.clone(),
             picture: None,
+            image: None,
         });
         let of = Box::new(base.preset);
         self.drawn = Some(Drawn {
@@ -294,6 +319,11 @@ impl SweepPanel {
                     self.pictures(),
                     self.drawn.as_ref().map_or(0, |drawn| drawn.cells.len())
                 )));
+            } else if cfg!(not(target_arch = "wasm32"))
+                && self.pictures() > 0
+                && ui.button("Save sheet…").clicked()
+            {
+                commands.run(|app| ask_path(app, Purpose::Sheet));
             }
         });
         if let Some(error) = &self.error {

@@ -17,19 +17,18 @@ use crate::app::{
         fields::dot,
         form::words_ui,
         icons::{Icon, icon_button},
-        panel::{at_right, entry},
+        panel::{at_right, entry, is_phone},
+        text::with_own_paths,
         theme::{self, ThemeChoice},
     },
 };
+use crate::preset_file::{PLAIN, PresetFile};
 
 /// The bar at the top: menus, the open preset, the adapter, and the cost and error of the picture.
 pub struct TopBar;
 
-/// Below this width of the window the adapter is a dot, points.
+/// Below this width of the window the adapter is a dot and controls stand closer, points.
 const NARROW: f32 = 1080.0;
-
-/// Below this width there is no room for time and error beside the menus, points.
-const PHONE: f32 = 600.0;
 
 /// Room for milliseconds and for a count of wrong pixels, points: a number that comes or changes
 /// moves nothing beside it.
@@ -37,13 +36,13 @@ const TIME_WIDTH: f32 = 104.0;
 const ERROR_WIDTH: f32 = 96.0;
 
 /// Menus with the groups of their entries.
-const MENUS: [(&str, &[&[Action]]); 4] = {
+const MENUS: [(&str, &[&[Action]]); 6] = {
     use Action::*;
     [
         (
             "File",
             &[
-                &[Open, OpenWithScene],
+                &[New, Open, OpenWithScene, Plain],
                 &[Save, SaveAs, Export, Film],
                 &[CopyPreset, PastePreset, CopyLink, ExportAll],
                 &[Quit],
@@ -54,6 +53,7 @@ const MENUS: [(&str, &[&[Action]]); 4] = {
             &[
                 &[Undo, Redo],
                 &[AddEffect, NewEffect, Randomize, RandomizeWindow, Sweep],
+                &[Palette, Settings],
             ],
         ),
         (
@@ -72,66 +72,89 @@ const MENUS: [(&str, &[&[Action]]); 4] = {
                     AddBookmark,
                     NextBookmark,
                 ],
-                &[
-                    Verify,
-                    Overlays,
-                    NextPixel,
-                    PreviousPixel,
-                    Handles,
-                    BoundingBox,
-                    Axes,
-                    Grid,
-                    Compare,
-                    FlipAb,
-                ],
-                &[Panels, Timeline, Trade, Timing, Log],
-                &[Extremes, Review, Palette, CheatSheet, Settings],
+                &[Handles, BoundingBox, Axes, Grid],
+                &[Panels, Timeline, Timing, Log],
             ],
         ),
+        (
+            "Judge",
+            &[
+                &[Verify, Overlays, NextPixel, PreviousPixel],
+                &[Compare, FlipAb],
+                &[Trade, Extremes, Review],
+            ],
+        ),
+        ("Help", &[&[Guide, CheatSheet], &[Report, About]]),
     ]
 };
 
 impl Panel for TopBar {
     fn ui(&mut self, ui: &mut Ui, state: &State, commands: &Commands) {
+        let is_phone = is_phone(ui.ctx());
         ui.horizontal(|ui| {
             ui.set_min_height(28.0);
-            menus_ui(ui, state, commands);
+            if is_phone {
+                ui.menu_button("Menu", |ui| menus_ui(ui, state, commands));
+            } else {
+                menus_ui(ui, state, commands);
+                ui.add_space(theme::HALF);
+                steps_ui(ui, state, commands);
+            }
             ui.add_space(theme::HALF);
             at_right(ui, |ui| {
-                ui.spacing_mut().item_spacing.x = 6.0;
-                adapter_ui(ui, state, ui.ctx().content_rect().width() < NARROW);
-                ui.separator();
-                anti_aliasing_ui(ui, state, commands);
-                if ui.ctx().content_rect().width() >= PHONE {
+                let is_narrow = is_narrow(ui);
+                // In a narrow window the name of the preset needs the room more.
+                ui.spacing_mut().item_spacing.x = if is_narrow { 4.0 } else { 6.0 };
+                adapter_ui(ui, state, is_narrow);
+                if !is_phone {
+                    ui.separator();
+                    anti_aliasing_ui(ui, state, commands);
                     cost_ui(ui, state, commands);
                 }
                 // What is left belongs to the name, which is cut if it is too long.
                 ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
-                    name_ui(ui, state)
+                    name_ui(ui, state, commands)
                 });
             });
         });
     }
 }
 
+fn is_narrow(ui: &Ui) -> bool {
+    ui.ctx().content_rect().width() < NARROW
+}
+
 fn menus_ui(ui: &mut Ui, state: &State, commands: &Commands) {
     ui.spacing_mut().item_spacing.x = 2.0;
     for (title, groups) in MENUS {
         ui.menu_button(title, |ui| {
-            ui.set_min_width(220.0);
-            for (index, actions) in groups.iter().enumerate() {
-                if index > 0 {
-                    ui.separator();
-                }
-                let actions = actions.iter().filter(|action| action.is_here());
-                actions.for_each(|action| entry_ui(ui, *action, state, commands));
+            if !is_phone(ui.ctx()) {
+                ui.set_min_width(220.0);
             }
-            if title == "View" {
-                looks_ui(ui, state.settings.theme, commands);
-            }
+            // In a low window, or with large texts, a menu scrolls.
+            let height = ui.ctx().content_rect().height() - 64.0;
+            egui::ScrollArea::vertical()
+                .max_height(height)
+                // A menu offers less height than the window has.
+                .min_scrolled_height(height)
+                .show(ui, |ui| {
+                    for (index, actions) in groups.iter().enumerate() {
+                        if index > 0 {
+                            ui.separator();
+                        }
+                        let actions = actions.iter().filter(|action| action.is_here());
+                        actions.for_each(|action| entry_ui(ui, *action, state, commands));
+                    }
+                    if title == "View" {
+                        looks_ui(ui, state.settings.theme, commands);
+                    }
+                });
         });
     }
-    ui.add_space(theme::HALF);
+}
+
+/// Buttons for the presets beside the open one, and to undo.
+fn steps_ui(ui: &mut Ui, state: &State, commands: &Commands) {
     let can_undo = state.history.can_undo();
     for (icon, action, is_enabled) in [
         (Icon::Left, Action::PreviousPreset, true),
@@ -145,13 +168,21 @@ fn menus_ui(ui: &mut Ui, state: &State, commands: &Commands) {
     }
 }
 
-/// The entry of an action in a menu.
-fn entry_ui(ui: &mut Ui, action: Action, state: &State, commands: &Commands) {
-    let button = entry(action.label(), 208.0).shortcut_text(action.shortcut_text());
+/// An action with its shortcut; a phone has no keys.
+fn action_ui(ui: &mut Ui, action: Action, width: f32, commands: &Commands) {
+    let button = match is_phone(ui.ctx()) {
+        true => entry(action.label(), theme::ROW),
+        false => entry(action.label(), width).shortcut_text(action.shortcut_text()),
+    };
     if ui.add(button).accessible_name(action.label()).clicked() {
         commands.perform(action);
         ui.close();
     }
+}
+
+/// The entry of an action in a menu.
+fn entry_ui(ui: &mut Ui, action: Action, state: &State, commands: &Commands) {
+    action_ui(ui, action, 208.0, commands);
     if action == Action::Open {
         ui.menu_button("Open recent", |ui| recents_ui(ui, state, commands));
     }
@@ -180,7 +211,7 @@ fn recents_ui(ui: &mut Ui, state: &State, commands: &Commands) {
             .min_size(vec2(280.0, theme::ROW));
         let button = ui
             .add_enabled(!is_missing, button)
-            .on_hover_text(path.display().to_string());
+            .on_hover_text(with_own_paths(path.display().to_string()));
         if button
             .on_disabled_hover_text(format!("{} is gone", path.display()))
             .accessible_name(format!("Recent {name}"))
@@ -209,22 +240,18 @@ fn looks_ui(ui: &mut Ui, chosen: ThemeChoice, commands: &Commands) {
         }
         ui.separator();
         for action in [Action::ScaleUp, Action::ScaleDown, Action::ScaleReset] {
-            let button = entry(action.label(), 240.0).shortcut_text(action.shortcut_text());
-            if ui.add(button).accessible_name(action.label()).clicked() {
-                commands.perform(action);
-                ui.close();
-            }
+            action_ui(ui, action, 240.0, commands);
         }
     });
 }
 
 /// Name of the preset, and whether it has unsaved changes.
-fn name_ui(ui: &mut Ui, state: &State) {
+fn name_ui(ui: &mut Ui, state: &State, commands: &Commands) {
     ui.spacing_mut().item_spacing.x = 6.0;
     let open = &state.session.preset_file;
     let name = theme::strong(open.title()).strong();
     let file = match (&open.path, open.read_only) {
-        (Some(path), _) => path.display().to_string(),
+        (Some(path), _) => with_own_paths(path.display().to_string()),
         (None, true) => format!("{}, built in. Save asks for a file name.", open.id),
         (None, false) => "Not saved yet".into(),
     };
@@ -235,16 +262,34 @@ fn name_ui(ui: &mut Ui, state: &State) {
         true if width > 150.0 => 70.0,
         true => 16.0,
     };
+    let look = if width - rest > 120.0 { 46.0 } else { 0.0 };
     ui.scope(|ui| {
-        ui.set_max_width((width - rest).max(0.0));
+        ui.set_max_width((width - rest - look).max(0.0));
         ui.add(egui::Label::new(name).truncate().sense(Sense::hover()))
             .on_hover_text(file);
     });
+    if look > 0.0 {
+        plain_ui(ui, open, is_modified, commands);
+    }
     if is_modified {
         dot(ui, theme::accent());
         if rest > 16.0 {
             ui.label(theme::weak("unsaved"));
         }
+    }
+}
+
+/// A button of the plain look, which is pressed while that is on. Of another look the name tells.
+fn plain_ui(ui: &mut Ui, open: &PresetFile, is_modified: bool, commands: &Commands) {
+    let is_on = open.look_id() == PLAIN && !is_modified;
+    let hint = match is_on {
+        true => "The plain look is on: the scene's own materials under a sun with soft shadows",
+        false => "Show this scene in the plain look",
+    };
+    let button = egui::Button::new("Plain").small().selected(is_on);
+    let button = ui.add(button).on_hover_text(hint);
+    if button.accessible_name(Action::Plain.label()).clicked() && !is_on {
+        commands.perform(Action::Plain);
     }
 }
 
@@ -280,7 +325,6 @@ fn adapter_ui(ui: &mut Ui, state: &State, is_narrow: bool) {
 
 /// Cost and error, always side by side.
 fn cost_ui(ui: &mut Ui, state: &State, commands: &Commands) {
-    ui.spacing_mut().item_spacing.x = 6.0;
     let (color, error, hint) = error_line(
         state.picture.verification.verdict(),
         state.picture.screen.requested(),
@@ -304,7 +348,7 @@ fn cost_ui(ui: &mut Ui, state: &State, commands: &Commands) {
     let (time, hint) = time_line(Some(&state.picture.screen));
     let time = theme::strong(time);
     number_ui(ui, TIME_WIDTH, Align::Max, time, hint);
-    pins_ui(ui, &state.session.preset().accuracy.pins.words());
+    pins_ui(ui, state);
 }
 
 /// A text at the left (`Min`) or right (`Max`) of a room of at least `width` points, in a narrow window
@@ -322,12 +366,7 @@ fn number_ui(ui: &mut Ui, width: f32, side: Align, text: RichText, hint: String)
         f32::INFINITY,
         font,
     );
-    // In a narrow window the name of the preset needs the room more.
-    let reserved = if ui.ctx().content_rect().width() < NARROW {
-        0.0
-    } else {
-        width
-    };
+    let reserved = if is_narrow(ui) { 0.0 } else { width };
     let width = reserved.max(galley.size().x);
     ui.allocate_ui_with_layout(vec2(width, theme::ROW), layout, |ui| {
         ui.set_min_width(width);
@@ -354,14 +393,29 @@ fn verifying_ui(ui: &mut Ui, progress: &Progress, commands: &Commands) {
     ui.request_repaint_after_secs(0.1);
 }
 
-/// Accuracy options that the preset pins, as `coverage=fixed8 depth=log16`.
-fn pins_ui(ui: &mut Ui, words: &str) {
-    let text = match words.split(' ').count() {
+/// Accuracy options that the preset pins, as `coverage=fixed8` or `2 options pinned by you`: the
+/// file has some of them, and the person has chosen the others since.
+fn pins_ui(ui: &mut Ui, state: &State) {
+    let pins = state.session.preset().accuracy.pins;
+    let words = pins.words();
+    let filed = state.session.as_filed().preset.accuracy.pins.words();
+    let is_filed = |word: &&str| filed.split(' ').any(|known| known == *word);
+    let (of_file, own): (Vec<&str>, Vec<&str>) = words.split(' ').partition(is_filed);
+    let text = match (of_file.len(), own.len()) {
         _ if words.is_empty() => return,
-        1 => words.to_owned(),
-        count => format!("{count} options pinned"),
+        (0, 1) | (1, 0) => words.clone(),
+        // The hint says by whom.
+        (file, own) if is_narrow(ui) => format!("{} pinned", file + own),
+        (count, 0) => format!("{count} options pinned by the preset"),
+        (0, count) => format!("{count} options pinned by you"),
+        (file, own) => format!("{} options pinned, {own} by you", file + own),
     };
+    let by = |who: &str, words: &[&str]| match words {
+        [] => String::new(),
+        words => format!("Pinned by {who}:\n{}\n", words.join("\n")),
+    };
+    let hint = by("the preset", &of_file) + &by("you, not saved yet", &own);
     ui.label(theme::weak("·"));
     ui.label(RichText::new(text).size(12.0).color(theme::accent()))
-        .on_hover_text(words.replace(' ', "\n"));
+        .on_hover_text(hint.trim_end());
 }

@@ -8,7 +8,10 @@ use crate::{
     preset_file::{self, PresetFile},
 };
 use crate::{
-    effects::Stack,
+    effects::{
+        Stack,
+        given::{Given, words_of_pointer, words_of_view},
+    },
     preset::AccuracyRequest,
     scene::{Scene, view::View},
 };
@@ -53,6 +56,7 @@ impl Inputs {
             accuracy: preset.accuracy,
             scene,
         }
+        .given(None)
     }
 
     /// The preset that says all of this, as its text does; none where no text does: particles that
@@ -71,6 +75,24 @@ impl Inputs {
         let said = preset_file::parse(&text, &said.id).ok()?;
         let size = [self.view.width, self.view.height];
         (Self::of(said.clone(), self.scene.clone(), size) == *self).then_some(said)
+    }
+
+    /// The same with what effects are given of the view, and of the pointer where it is over the
+    /// picture, in pixels.
+    #[must_use]
+    pub fn given(mut self, pointer: Option<[f32; 2]>) -> Self {
+        let View {
+            width,
+            height,
+            eye,
+            forward,
+            ..
+        } = self.view;
+        self.stack = self.stack.with_given(|given| match (given, pointer) {
+            (Given::Pointer, Some(at)) => Some(words_of_pointer(at, true)),
+            _ => words_of_view(given, [width, height], eye, forward),
+        });
+        self
     }
 
     /// The same frustum on fewer pixels, with lengths in pixels as much smaller, so that nothing

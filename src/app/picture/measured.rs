@@ -12,9 +12,9 @@ use super::{
 use crate::app::widgets::{text::group_digits, theme};
 
 /// What the two counts of wrong pixels mean, wherever they stand.
-pub const WRONG_HINT: &str = "Snapped: pixels that show another triangle than the oracle draws from the same snapped corners, so a fault of the \
-     rasterizer. True: pixels that show another triangle than the exact picture of the true positions, so the error that snapping and every other \
-     option of accuracy make.";
+pub const WRONG_HINT: &str = "Wrong: pixels that show another triangle than the oracle draws from the same snapped corners, so a fault of the \
+     rasterizer. By rounding: pixels that show another triangle than the exact picture of the true positions, so the error that snapping and every \
+     other option of accuracy make.";
 
 /// What stands in place of milliseconds that are not known yet.
 const UNTIMED: &str = "– ms";
@@ -87,38 +87,46 @@ fn error_color(findings: &Findings) -> Color32 {
 /// it are in [`details`].
 pub fn error_text(findings: &Findings) -> String {
     let report = &findings.accuracy;
-    let wrong = match report.wrong_triangles {
-        0 => "no wrong pixel".to_owned(),
-        1 => "1 wrong pixel".to_owned(),
-        count => format!("{} wrong pixels", group_digits(count)),
-    };
-    let rounded = match findings.wrong_against_true() {
-        None | Some(0) => String::new(),
-        Some(1) => ", 1 differs by rounding".to_owned(),
-        Some(count) => format!(", {} differ by rounding", group_digits(count)),
-    };
+    let counts = counts_text(report.wrong_triangles, findings.wrong_against_true());
     let race = match report.race_pixels {
         0 => String::new(),
         count => format!(", {} lost to the race", group_digits(count)),
     };
-    // A last bit is no difference that a person could see.
-    let color = match report.max_color_delta {
+    format!("{counts}{race}{}", color_text(report.max_color_delta))
+}
+
+/// `no wrong pixel, 17 differ by rounding`.
+pub fn counts_text(wrong: u64, by_rounding: Option<u64>) -> String {
+    let rounded = match by_rounding {
+        None | Some(0) => String::new(),
+        Some(1) => ", 1 differs by rounding".to_owned(),
+        Some(count) => format!(", {} differ by rounding", group_digits(count)),
+    };
+    match wrong {
+        0 => format!("no wrong pixel{rounded}"),
+        1 => format!("1 wrong pixel{rounded}"),
+        count => format!("{} wrong pixels{rounded}", group_digits(count)),
+    }
+}
+
+/// A last bit is no difference that a person could see.
+pub fn color_text(max_delta: u8) -> String {
+    match max_delta {
         0 | 1 => String::new(),
         delta => format!(", colors off by up to {delta} of 255"),
-    };
-    format!("{wrong}{rounded}{race}{color}")
+    }
 }
 
 fn details(findings: &Findings) -> String {
     let report = &findings.accuracy;
     let against_true = match findings.wrong_against_true() {
-        Some(count) => format!("{} against the true positions", group_digits(count)),
+        Some(count) => format!("{} differ by rounding", group_digits(count)),
         None => {
             "not compared with the true positions, because its effects are not reproducible".into()
         }
     };
     format!(
-        "{} pixels compared with the oracle: {} wrong against the snapped corners, {against_true}; {} explained by a vertex one snap unit \
+        "{} pixels compared with the oracle: {} wrong, {against_true}; {} explained by a vertex one snap unit \
          away, {} depth ties, {} holes, {} drawn twice; color max Δ {} and RMS {:.3} of 255.\n\n{WRONG_HINT}",
         group_digits(report.pixels),
         group_digits(report.wrong_triangles),
@@ -202,8 +210,8 @@ mod tests {
                 (color, text)
             );
             assert!(
-                details(&findings).contains("against the snapped corners")
-                    && details(&findings).contains("true positions")
+                details(&findings).contains("Wrong: pixels")
+                    && details(&findings).contains("By rounding: pixels")
             );
         }
     }

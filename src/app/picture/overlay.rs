@@ -55,7 +55,7 @@ const TABLE: [(Overlay, &str, &str, Color32); 11] = [
     ),
     (
         Overlay::NotReference,
-        "Wrong (true)",
+        "By rounding",
         "Another triangle than in the exact picture of the true positions, on the finest grid. The header and Trade count the same; \
          it includes the error of snapping and of every other option",
         Color32::from_rgb(204, 156, 255),
@@ -74,14 +74,14 @@ const TABLE: [(Overlay, &str, &str, Color32); 11] = [
     ),
     (
         Overlay::WrongTriangle,
-        "Wrong (snapped)",
+        "Wrong",
         "Another triangle than the oracle draws from the same snapped corners, and no rounding that is allowed explains it. The header counts the same",
         Color32::from_rgb(255, 64, 224),
     ),
     (
         Overlay::WrongDepth,
         "Wrong depth winner",
-        "The triangle covers the sample but is not the nearest. These pixels are wrong against the snapped corners too",
+        "The triangle covers the sample but is not the nearest. These pixels are wrong, too",
         Color32::from_rgb(255, 150, 48),
     ),
     (

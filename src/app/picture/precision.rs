@@ -1,4 +1,4 @@
-//! The largest f32 error of the user's effects in the picture that is shown: measured by the oracle
+//! The largest f32 error of the effects in the picture that is shown: measured by the oracle
 //! while the picture is at rest.
 
 use std::sync::{
@@ -31,7 +31,7 @@ pub struct Error {
     pub uv: Option<[f64; 2]>,
 }
 
-/// The errors of the user's effects in one picture.
+/// The errors of the effects in one picture; of those that it calls.
 #[derive(Clone, Debug)]
 pub struct Measured {
     pub of: Inputs,
@@ -112,7 +112,7 @@ impl PrecisionState {
     }
 }
 
-/// Measures the effects of files in the picture of `of`, drawn by the oracle at no more than 76,800
+/// Measures the effects in the picture of `of`, drawn by the oracle at no more than 76,800
 /// pixels; none if it was cancelled.
 ///
 /// # Errors
@@ -127,16 +127,11 @@ pub fn measure(of: &Inputs, cancelled: &Arc<AtomicBool>) -> Result<Option<Measur
         of.view.clone()
     };
     let mut drawn = Ok(());
-    let found = effect_files::precision(
-        &of.stack.scaled(factor),
-        Effect::is_of_file,
-        cancelled,
-        |stack| {
-            drawn = oracle::render(&of.scene, &view, stack)
-                .map(drop)
-                .map_err(|error| error.to_string());
-        },
-    );
+    let found = effect_files::precision(&of.stack.scaled(factor), cancelled, |stack| {
+        drawn = oracle::render(&of.scene, &view, stack)
+            .map(drop)
+            .map_err(|error| error.to_string());
+    });
     let found = found.map_err(|error| error.to_string())?;
     drawn?;
     if cancelled.load(Ordering::Relaxed) {

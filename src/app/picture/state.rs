@@ -18,7 +18,7 @@ pub struct PictureState {
     pub screen: Screen,
     pub verification: Verification,
     pub overlays: OverlaySelection,
-    /// The f32 errors of the user's effects.
+    /// The f32 errors of the effects.
     pub precision: PrecisionState,
     /// Presets whose picture differs from its golden.
     pub review: Review,

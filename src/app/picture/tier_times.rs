@@ -1,6 +1,6 @@
 //! What the accuracy tiers cost on the open picture: measured beside it while the window is at rest
-//! and somebody looks at the slider. Times hold for one kernel, size and adapter, and are dropped
-//! when the picture changes.
+//! and somebody looks at the slider. Times hold for one kernel, size and adapter, and those
+//! of the last few pictures are kept.
 
 use std::sync::Arc;
 
@@ -25,18 +25,19 @@ use crate::{
 /// How far a picture was judged to be off.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Judged {
-    /// Pixels with another triangle than the oracle draws from the same snapped corners, per
-    /// million.
-    pub wrong_ppm: f64,
+    /// Pixels with another triangle than the oracle draws from the same snapped corners.
+    pub wrong: u64,
     /// And than the exact picture of the true positions; none where that is not reproducible.
-    pub true_ppm: Option<f64>,
+    pub by_rounding: Option<u64>,
     /// Largest difference of a color channel, of 255.
     pub channel: u8,
 }
 
 /// What is known of a tier on the open picture.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct TierNumbers {
+    /// Tiers with the same one draw the same picture.
+    pub kernel: KernelKey,
     pub time: TierTime,
     pub judged: Option<Judged>,
     /// What its options may err by.
@@ -70,6 +71,16 @@ pub struct Timed {
     pub drawing: TierDrawing,
 }
 
+/// A picture with what was measured and judged of it.
+type Known = (
+    Inputs,
+    Vec<(KernelKey, Option<f64>)>,
+    Vec<(KernelKey, Judged)>,
+);
+
+/// Most pictures of which that is kept: a panel that opens and closes changes the size of the picture.
+const MOST_KNOWN: usize = 4;
+
 /// The times of tiers on the open picture.
 #[derive(Default)]
 pub struct TierTimes {
@@ -78,6 +89,8 @@ pub struct TierTimes {
     /// Milliseconds by kernel; none where it could not be measured.
     times: Vec<(KernelKey, Option<f64>)>,
     judged: Vec<(KernelKey, Judged)>,
+    /// What is known of the same picture in the sizes that it had before, newest last.
+    others: Vec<Known>,
     running: Option<Arc<CompileWatch>>,
     drawing: TierDrawing,
     /// What the times have told about options on this adapter.
@@ -121,14 +134,34 @@ impl TierTimes {
         (self.picture, self.drawing.renderer) = (None, None);
         self.times.clear();
         self.judged.clear();
+        self.others.clear();
     }
 
-    /// Seconds for which the picture has not changed. What was measured of another one is dropped.
+    /// Seconds for which the picture has not changed. What was measured of the last few others is kept.
     fn rest_s(&mut self, requested: &Inputs, now_s: f64) -> f64 {
         if let Some((_, since_s)) = self.picture.as_ref().filter(|_| self.is_of(requested)) {
             return now_s - since_s;
         }
-        self.forget();
+        self.stop();
+        self.drawing.renderer = None;
+        let (times, judged) = (
+            std::mem::take(&mut self.times),
+            std::mem::take(&mut self.judged),
+        );
+        if let Some((before, _)) = self.picture.take()
+            && !(times.is_empty() && judged.is_empty())
+        {
+            self.others.push((before, times, judged));
+        }
+        // Pictures of another scene would keep it in memory.
+        self.others
+            .retain(|(known, ..)| Arc::ptr_eq(&known.scene, &requested.scene));
+        self.others
+            .drain(..self.others.len().saturating_sub(MOST_KNOWN));
+        let is_this = |(known, ..): &Known| known.is_same_but_for_tier(requested);
+        if let Some(at) = self.others.iter().position(is_this) {
+            (_, self.times, self.judged) = self.others.remove(at);
+        }
         self.picture = Some((requested.clone(), now_s));
         0.0
     }
@@ -191,6 +224,7 @@ pub fn numbers(state: &State, tier: Tier) -> Option<TierNumbers> {
         .is_some_and(|drawn| times.is_of(drawn))
     {
         return Some(TierNumbers {
+            kernel: plan.key,
             time: TierTime::NotYet,
             judged: None,
             bound: plan.prediction,
@@ -203,6 +237,7 @@ pub fn numbers(state: &State, tier: Tier) -> Option<TierNumbers> {
         .map(|(_, judged)| *judged);
     Some(TierNumbers {
         time: times.time(&plan.key),
+        kernel: plan.key,
         judged,
         bound: plan.prediction,
     })
@@ -307,12 +342,10 @@ pub fn judge(state: &mut State, Verdict { of, findings }: &Verdict) {
     let Some((plan, _)) = plan_in(state, of.accuracy.tier) else {
         return;
     };
-    let report = &findings.accuracy;
-    let ppm = |count: u64| count as f64 * 1e6 / (report.pixels as f64).max(1.0);
     let judged = Judged {
-        wrong_ppm: ppm(report.wrong_triangles),
-        true_ppm: findings.wrong_against_true().map(ppm),
-        channel: report.max_color_delta,
+        wrong: findings.accuracy.wrong_triangles,
+        by_rounding: findings.wrong_against_true(),
+        channel: findings.accuracy.max_color_delta,
     };
     state
         .picture

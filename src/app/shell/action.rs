@@ -12,7 +12,7 @@ use crate::{
     app::{
         App,
         editing::{apply as editing, preset_edit::Edit},
-        files::{apply as files, command::Purpose},
+        files::{apply as files, command::Purpose, open},
         picture::{apply as picture, review::Review},
     },
     scene::camera_moves::{FRONT, SIDE, TOP},
@@ -66,13 +66,15 @@ macro_rules! actions {
 }
 
 actions! {
-    Redo "Redo" [command_shift(Key::Z), command(Key::Y)] |app| editing::redo(&mut app.state);
-    Undo "Undo" [command(Key::Z)] |app| editing::undo(&mut app.state);
-    SaveAs "Save as…" [command_shift(Key::S)] |app| files::ask_path(app, Purpose::SaveAs);
-    Save "Save" [command(Key::S)] files::save;
+    New "New" [command(Key::N)] open::begin_new;
+    Plain "Plain look" [] open::show_plain;
     Open "Open…" [command(Key::O)] |app| files::ask_path(app, Purpose::Open);
-    Film "Export film…" [command_shift(Key::E)] toggle_film;
+    Save "Save" [command(Key::S)] files::save;
+    SaveAs "Save as…" [command_shift(Key::S)] |app| files::ask_path(app, Purpose::SaveAs);
+    Undo "Undo" [command(Key::Z)] |app| editing::undo(&mut app.state);
+    Redo "Redo" [command_shift(Key::Z), command(Key::Y)] |app| editing::redo(&mut app.state);
     Export "Export PNG…" [plain(Key::F12), command(Key::E)] |app| files::ask_path(app, Purpose::Export);
+    Film "Export film…" [command_shift(Key::E)] toggle_film;
     CopyPreset "Copy preset" [] copy_preset;
     PastePreset "Paste preset" [] |app| app.ctx.send_viewport_cmd(ViewportCommand::RequestPaste);
     CopyLink "Copy link to a page" [] |app| copy_link(&mut app.state);
@@ -84,8 +86,8 @@ actions! {
     NextPreset "Next preset" [plain(Key::CloseBracket)] |app| files::open_neighbor(app, 1);
     AddEffect "Add effect…" [shift(Key::A)] |app| app.panels.browser.effects.begin_adding(String::new());
     NewEffect "New effect of my own…" [] |app| ask_new_effect(app, None);
-    RandomizeWindow "Randomize: locks and seeds…" [shift(Key::R)] |app| app.panels.randomize.toggle();
     Randomize "Randomize effects" [plain(Key::R)] |app| editing::randomize(&mut app.state);
+    RandomizeWindow "Randomize: locks and seeds…" [shift(Key::R)] |app| app.panels.randomize.toggle();
     Sweep "Sweep of parameters…" [shift(Key::S)] |app| app.panels.sweep.toggle();
     Frame "Frame the scene" [plain(Key::Home)] |app| app.edit(Edit::FrameScene);
     Front "Front view" [plain(Key::Num1)] |app| app.edit(Edit::LookAlong(FRONT));
@@ -120,7 +122,10 @@ actions! {
     Timeline "Show or hide the timeline" [plain(Key::T)] |app| app.state.open.timeline ^= true;
     Log "Show or hide the log" [plain(Key::L)] |app| app.state.open.log ^= true;
     Palette "Command palette…" [command(Key::K)] toggle_palette;
-    CheatSheet "Cheat sheet" [plain(Key::F1), plain(Key::Questionmark)] |app| app.state.open.settings ^= true;
+    Guide "Guide" [] |app| app.panels.help.show_guide();
+    Report "Report a problem…" [] |app| app.panels.help.show_report();
+    About "About rasterlab" [] |app| app.panels.help.show_about();
+    CheatSheet "Keys and mouse" [plain(Key::F1), plain(Key::Questionmark)] |app| app.state.open.settings ^= true;
     Settings "Settings and keys…" [command(Key::Comma)] |app| app.state.open.settings ^= true;
     ScaleUp "Larger texts and controls" [command(Key::Plus), command(Key::Equals)] |app| app.change_settings(|settings| settings.change_scale(1.0));
     ScaleDown "Smaller texts and controls" [command(Key::Minus)] |app| app.change_settings(|settings| settings.change_scale(-1.0));

@@ -4,7 +4,10 @@ use std::{collections::VecDeque, fs::File, io::Write as _, sync::Arc};
 
 use egui::Color32;
 
-use crate::app::widgets::{text::first_line, theme};
+use crate::app::widgets::{
+    text::{first_line, with_own_paths},
+    theme,
+};
 
 /// How serious a message is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -91,7 +94,10 @@ impl Log {
 
     /// Logs a message. One that was logged before is counted and moves to the end.
     pub fn add(&mut self, level: Level, text: impl Into<String>) {
-        let text = text.into();
+        // A library may write a message of several lines; the log has one line for each message.
+        let text = with_own_paths(text.into());
+        let lines = text.lines().map(str::trim).filter(|line| !line.is_empty());
+        let text = lines.collect::<Vec<_>>().join(" · ");
         self.append(&format!("{}: {text}\n", level.word()));
         let known = self
             .entries
@@ -108,7 +114,7 @@ impl Log {
 
     /// Logs a message and shows its first line as a toast from `now_s` on.
     pub fn notify(&mut self, level: Level, text: impl Into<String>, now_s: f64) {
-        let text = text.into();
+        let text = with_own_paths(text.into());
         let shown = first_line(&text);
         self.toasts
             .retain(|toast| toast.text != shown && toast.until_s > now_s);

@@ -18,7 +18,8 @@ use crate::{
     app::{App, Options, files::take_along, settings::last_session::LastSession, window::input},
     archive,
     host::disk,
-    link, preset_file,
+    link,
+    preset_file::{self, PresetFile},
 };
 
 /// The folder whose files the browser keeps: settings and session.
@@ -362,6 +363,17 @@ pub fn stop(why: &str) {
     let report = Reflect::get(&js_sys::global(), &"reportError".into());
     if let Ok(report) = report.and_then(|report| report.dyn_into::<Function>()) {
         let _ = report.call1(&JsValue::NULL, &js_sys::Error::new(why));
+    }
+}
+
+/// Tells the page the title of what is open, and the id where that is a preset of the gallery as it
+/// is there: its address says so.
+pub fn tell_shown(title: &str, is_modified: bool, open: &PresetFile) {
+    let is_of_gallery = open.read_only && open.path.is_none() && !is_modified;
+    let id = if is_of_gallery { &open.id } else { "" };
+    let told = Reflect::get(&js_sys::global(), &"rasterlabShows".into());
+    if let Ok(told) = told.and_then(|told| told.dyn_into::<Function>()) {
+        let _ = told.call2(&JsValue::NULL, &title.into(), &id.into());
     }
 }
 

@@ -35,7 +35,7 @@ impl Metric {
 
     pub const fn name(self) -> &'static str {
         match self {
-            Self::Wrong => "wrong pixels",
+            Self::Wrong => "by rounding",
             Self::Color => "color difference",
             Self::Coverage => "holes and doubles",
             Self::Light => "wrong light",
@@ -252,7 +252,7 @@ mod tests {
         let lines: Vec<_> = text.lines().collect();
         assert_eq!(
             lines[0],
-            "coverage,depth,ms p5,ms p50,ms p95,samples,wrong pixels ppm,color difference of 255,holes and doubles per Mpx,bytes,note"
+            "coverage,depth,ms p5,ms p50,ms p95,samples,by rounding ppm,color difference of 255,holes and doubles per Mpx,bytes,note"
         );
         let ms = points[0].ms.expect("it was timed");
         let expected = format!(

@@ -279,11 +279,16 @@ fn label_ui(ui: &mut Ui, row: &Row, value: &Value, rect: Rect) -> Option<RowComm
         ui.label(theme::weak(format!(
             "{}   {}{}",
             row.path,
-            row.param.allowed(),
+            allowed_text(&row.param),
             spaced_unit(&row.param.unit)
         )));
     });
     command
+}
+
+/// The values that a parameter takes, for a person: `0.0001 to 1`.
+pub fn allowed_text(param: &Param) -> String {
+    param.allowed().replace("..=", " to ")
 }
 
 fn spaced_unit(unit: &str) -> String {
@@ -346,8 +351,11 @@ fn color_ui(ui: &mut Ui, commands: &Commands, row: &Row, components: &[f64]) -> 
             0.0
         })
     };
-    let picked = || Value::Numbers(color.map(picked).to_vec());
-    let changed = typed.or_else(|| response.changed().then(picked));
+    let picked = color.map(picked);
+    // To open and close the picker rounds the color, which changes nothing that is seen.
+    let is_other = hex_of_color(picked) != hex_of_color(std::array::from_fn(|i| components[i]));
+    let picked = || Value::Numbers(picked.to_vec());
+    let changed = typed.or_else(|| (response.changed() && is_other).then(picked));
     (response, changed)
 }
 
@@ -426,7 +434,7 @@ fn say(commands: &Commands, row: &Row, said: Option<String>) {
         let text = format!(
             "{} takes {}{}: {said}.",
             row.path,
-            row.param.allowed(),
+            allowed_text(&row.param),
             spaced_unit(&row.param.unit)
         );
         commands.notify(Level::Warning, text);

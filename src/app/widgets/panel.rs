@@ -7,6 +7,14 @@ use egui::{
 
 use super::theme;
 
+/// Below this width a window is a phone's, points: one menu, and handles for the side panels.
+const PHONE: f32 = 600.0;
+
+/// Is the window as narrow as a phone?
+pub fn is_phone(ctx: &Context) -> bool {
+    ctx.content_rect().width() < PHONE
+}
+
 /// Contents at the right end, from right to left.
 pub fn at_right<R>(ui: &mut Ui, contents: impl FnOnce(&mut Ui) -> R) -> R {
     ui.with_layout(Layout::right_to_left(Align::Center), contents)

@@ -10,7 +10,11 @@ use std::{
 use egui::{self, Ui, ViewportCommand};
 
 use super::{
-    escape::escape, fold::Fold, input, loss::LossFlag, pointer_frames::PointerFrames,
+    escape::escape,
+    fold::{Fold, handles_ui},
+    input,
+    loss::LossFlag,
+    pointer_frames::PointerFrames,
     typing::HeldTyping,
 };
 use crate::app::panels::panel::Panel;
@@ -41,8 +45,9 @@ use crate::{
             state::{Clipboard, Closing, State},
             ui_frames::UiFrames,
         },
-        widgets::theme,
+        widgets::{panel::is_phone, theme},
     },
+    effect_files::has_f32_error,
     gpu::device::AdapterChoice,
     host,
     preset_file::{self, Folders, PresetFile},
@@ -70,8 +75,10 @@ pub struct Options {
 
 /// Most seconds between two frames of the window while a preset plays.
 const PLAY_STEP_S: f32 = 1.0 / 30.0;
-/// Width of the text of an effect, points, and the least of it and of the picture beside it.
-const CODE_WIDTH: f32 = 440.0;
+/// Width of the text of an effect where there is room, points: 80 columns and line numbers. Then the
+/// width that it needs beside the presets, its least width, and that of the picture beside it.
+const CODE_WIDTH: f32 = 640.0;
+const CODE_BESIDE_PRESETS: f32 = 440.0;
 const LEAST_CODE: f32 = 260.0;
 const LEAST_PICTURE: f32 = 200.0;
 /// Least width of the picture for which the presets stay beside the text, points.
@@ -141,6 +148,7 @@ impl App {
         panels.browser.show(settings.browsing);
         panels.film.begin_with(settings.film.clone());
         let trust = Trust::default();
+        let is_named = options.opened.is_some() || options.open.is_some();
         let start = recovery::start(
             options.opened,
             options.open.as_deref(),
@@ -150,6 +158,7 @@ impl App {
         );
         ask_about(start.asks, start.crashed, &mut panels.dialogs);
         let mut session = start.session;
+        session.chose_look = is_named;
         // The start preset plays, unless on a software adapter, which draws moving pictures at half
         // their size: there its own moment stands whole. A preset that the user named does not play.
         session.playback.playing = options.open.is_none()
@@ -253,6 +262,12 @@ impl App {
         );
         if title != self.title {
             ctx.send_viewport_cmd(ViewportCommand::Title(title.clone()));
+            #[cfg(target_arch = "wasm32")]
+            crate::app::shell::page::tell_shown(
+                &title,
+                session.is_modified(),
+                &session.preset_file,
+            );
             self.title = title;
         }
     }
@@ -338,7 +353,7 @@ impl App {
         }
     }
 
-    /// Starts to measure the f32 errors of the user's effects when the picture is at rest. They are
+    /// Starts to measure the f32 errors of the effects when the picture is at rest. They are
     /// shown in the inspector alone.
     fn request_precision(&mut self, ctx: &egui::Context, is_held: bool) {
         let State {
@@ -371,7 +386,7 @@ impl App {
             .stack
             .0
             .iter()
-            .any(|enabled| enabled.effect.is_of_file());
+            .any(|enabled| has_f32_error(&enabled.effect));
         if !is_used || is_known || is_busy || !open.right || screen.drawn() != Some(requested) {
             return;
         }
@@ -414,6 +429,11 @@ impl App {
             .frame(theme::bar_frame())
             .show_separator_line(false)
             .show(ui, |ui| self.panel_ui(ui, |panels| &mut panels.topbar));
+        if is_phone(ui.ctx()) {
+            egui::Panel::bottom("handles")
+                .frame(theme::bar_frame())
+                .show(ui, |ui| handles_ui(ui, &mut self.state.open));
+        }
         let height = self.panels.timeline.height(&self.state.session);
         let timeline = egui::Panel::bottom("timeline")
             .frame(theme::bar_frame())
@@ -446,7 +466,7 @@ impl App {
         let window = ui.ctx().content_rect().width();
         let [left_width, right_width] = self.state.settings.panel_widths(window);
         // Where there is no room for both, the text stands in place of the presets.
-        let beside = left_width + CODE_WIDTH + PICTURE_BESIDE_PRESETS + right_width;
+        let beside = left_width + CODE_BESIDE_PRESETS + PICTURE_BESIDE_PRESETS + right_width;
         if !self.panels.code.is_open() || beside <= window {
             let left = egui::Panel::left("left")
                 .frame(theme::panel_frame())
@@ -471,7 +491,7 @@ impl App {
             let widest = ui.available_width() - right_width - LEAST_PICTURE;
             egui::Panel::left("code")
                 .frame(theme::panel_frame())
-                .default_size(CODE_WIDTH)
+                .default_size(CODE_WIDTH.min((widest - LEAST_PICTURE).max(LEAST_CODE)))
                 .size_range(LEAST_CODE..=widest.max(LEAST_CODE))
                 .show(ui, |ui| self.panel_ui(ui, |panels| &mut panels.code));
         }
@@ -592,6 +612,7 @@ impl eframe::App for App {
         self.panel_ui(ui, |panels| &mut panels.randomize);
         self.panel_ui(ui, |panels| &mut panels.sweep);
         self.panel_ui(ui, |panels| &mut panels.film);
+        self.panel_ui(ui, |panels| &mut panels.help);
         self.request_thumbnail(&ctx);
         self.request_precision(&ctx, is_held || self.panels.film.is_exporting());
         let compare = &self.panels.viewport.compare;

@@ -37,11 +37,12 @@ type Close = fn(&mut App);
 /// What is open innermost: whether it is a window, and how it is closed.
 fn innermost(app: &App) -> Option<(bool, Close)> {
     let App { state, panels, .. } = app;
-    let all: [(bool, bool, Close); 14] = [
+    let all: [(bool, bool, Close); 15] = [
         (state.session.scenes.is_loading(), false, cancel_loading),
         (state.picture.picking.is_some(), false, |app| {
             app.state.picture.picking = None
         }),
+        (panels.help.is_open(), true, |app| app.panels.help.close()),
         (panels.film.is_open(), true, toggle_film),
         (panels.sweep.is_open(), true, |app| {
             app.panels.sweep.toggle()

@@ -1,5 +1,7 @@
 //! Folding: a narrow page has room for one side panel at a time, beside the picture.
 
+use egui::{Button, Ui, vec2};
+
 use crate::app::settings::OpenPanels;
 
 /// Below this width of the window the side panels fold, points.
@@ -45,6 +47,24 @@ impl Fold {
             ..open
         }
     }
+}
+
+/// The handles of the side panels in the window of a phone: each opens its panel and closes it.
+pub fn handles_ui(ui: &mut Ui, open: &mut OpenPanels) {
+    ui.columns(2, |columns| {
+        let [left, right] = columns else { return };
+        let handles = [
+            (left, "Presets", &mut open.left),
+            (right, "Effects", &mut open.right),
+        ];
+        for (ui, name, is_open) in handles {
+            let handle = Button::selectable(*is_open, name);
+            let handle = handle.frame_when_inactive(true);
+            *is_open ^= ui
+                .add_sized(vec2(ui.available_width(), 36.0), handle)
+                .clicked();
+        }
+    });
 }
 
 #[cfg(test)]

@@ -742,4 +742,6 @@ fn passes_of_image_effects_are_judged_from_the_adapters_picture_before_them() {
         resolved.rotate_right(1);
     });
     assert!(before.within(&Budget::default()).is_err(), "{before:?}");
+    let faults = rasterlab::preset::GoldenTest::default().faults(&before, 0, false);
+    assert!(faults.concat().contains("largest color"), "{faults:?}");
 }

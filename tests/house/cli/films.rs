@@ -91,6 +91,22 @@ fn ffmpeg_gets_every_frame_in_order_and_the_video_its_name() {
     );
     place.play(&format!("$ {line}"));
     assert!(place.read("received") == expected[2 * 24 * 18 * 4..4 * 24 * 18 * 4]);
+    // A fraction is the rate of the video to the last digit; a GIF has at most 50 a second.
+    for (fps, name, said, rate) in [
+        ("120000/1001", "fast.mp4", "", "120000/1001"),
+        ("30000/1001", "slow.webm", "", "30000/1001"),
+        (
+            "60",
+            "fast.gif",
+            "! A GIF shows at most 50 frames a second, so the film has 50 instead of 60.",
+            "50/1",
+        ),
+    ] {
+        let line = format!("sequence move.toml --fps {fps} CPU --frames 0..1 --video {name}");
+        place.play(&format!("$ {}\n{said}", filmed(&place, &line)));
+        let arguments = String::from_utf8(place.read("arguments")).unwrap();
+        assert!(arguments.lines().any(|line| line == rate), "{arguments}");
+    }
 }
 
 #[test]
@@ -236,6 +252,19 @@ fn the_frames_of_real_videos_are_those_that_were_drawn() {
             drawn.len(),
             "{name}: frames of the film"
         );
+        let probe = format!(
+            "-loglevel error -show_entries stream=color_space,color_transfer,color_primaries -of csv=p=0 {name}"
+        );
+        let mut ffprobe = Command::new("ffprobe");
+        let probed = ffprobe
+            .current_dir(place.at(""))
+            .args(probe.split(' '))
+            .output();
+        if let Ok(probed) = probed.map(|probed| probed.stdout)
+            && name != "film.gif"
+        {
+            assert_eq!(String::from_utf8_lossy(&probed).trim(), "bt709,bt709,bt709");
+        }
         let pairs = decoded.stdout.iter().zip(&drawn);
         let difference: f64 =
             pairs.map(|(a, b)| f64::from(a.abs_diff(*b))).sum::<f64>() / drawn.len() as f64;

@@ -34,6 +34,26 @@ fn every_command_has_a_manual_page_with_its_flags() {
 }
 
 #[test]
+fn help_lists_what_every_command_takes_apart_and_not_what_one_refuses() {
+    let place = Place::new();
+    for (command, takes_look) in [
+        ("list", false),
+        ("check", false),
+        ("render", true),
+        ("sweep", true),
+    ] {
+        let help = place.run(&format!("{command} --help")).out;
+        let (own, shared) = help.split_once("Options of every command:").unwrap();
+        assert!(
+            !own.contains("--adapter") && shared.contains("--adapter"),
+            "{help}"
+        );
+        assert_eq!(shared.contains("--preset "), takes_look, "{help}");
+        assert!(!help.contains("--log"), "{help}");
+    }
+}
+
+#[test]
 fn the_files_of_the_package_agree_with_each_other() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scripts/package");
     let read = |name: &str| fs::read_to_string(folder.join(name)).unwrap();

@@ -4,8 +4,10 @@
 use std::sync::{Arc, atomic::AtomicBool};
 
 use rasterlab::{
-    effect_files::{ErrorPlace, Quantity, Unsound, crossings, precision, read},
-    effects::{Effect, Stack},
+    effect_files::{
+        ErrorPlace, Quantity, Unsound, crossings, has_f32_error, overreaching, precision, read,
+    },
+    effects::{EFFECTS, Effect, Stack},
     oracle, preset_file,
     scene::{Scene, view::View},
 };
@@ -19,7 +21,7 @@ fn effect(body: &str) -> Arc<Effect> {
 }
 
 /// A picture of the teapot with one effect, whose parameters have these values.
-fn drawn(effect: &Arc<Effect>, values: [f64; 2]) -> (Scene, View, Stack) {
+fn drawn(effect: &Arc<Effect>, values: impl IntoIterator<Item = f64>) -> (Scene, View, Stack) {
     let preset = preset_file::open("builtin:teapot", &preset_file::Folders::default())
         .expect("a preset")
         .preset;
@@ -46,12 +48,9 @@ fn the_largest_error_is_where_f32_loses_digits() {
     let (scene, view, stack) = drawn(&effect, [1.0, 1.0]);
     let measure = |cancelled: bool| {
         let cancelled = Arc::new(AtomicBool::new(cancelled));
-        precision(
-            &stack,
-            |_| true,
-            &cancelled,
-            |stack| drop(oracle::render(&scene, &view, stack)),
-        )
+        precision(&stack, &cancelled, |stack| {
+            drop(oracle::render(&scene, &view, stack))
+        })
         .expect("it is evaluated")
     };
     let found = measure(false);
@@ -139,4 +138,72 @@ fn a_crossing_names_the_effect_the_kind_and_the_parameter() {
             .1
             .is_empty()
     );
+}
+
+#[test]
+fn a_pass_that_writes_what_is_not_finite_is_named_with_its_pixel() {
+    let text = "struct Probed { @range(0, 4, 1) a: f32, @range(0, 4, 1) b: f32 }
+fn probed(at: ImageAt, p: Probed) -> vec4f {
+    let bad = at.x == 20 && at.y == 9;
+    return vec4f(select(-1.0, 1.0 / (p.a - 2.0), bad), 0.0, 0.0, 1.0);
+}";
+    let effect = read("probed.wgsl", "probed", text).unwrap_or_else(|error| panic!("{error}"));
+    let (scene, view, stack) = drawn(&effect, [2.0, 2.0]);
+    let (frame, found) =
+        crossings(&stack, |stack| oracle::render(&scene, &view, stack)).expect("it is evaluated");
+    frame.expect("a picture");
+    let [crossing] = &found[..] else {
+        panic!("{} pixels", found.len())
+    };
+    let parameter = crossing.parameter.as_ref().map(|field| field.name.as_str());
+    assert_eq!(
+        (crossing.pixel, crossing.made, parameter),
+        ([20, 9], Unsound::Infinite, Some("a"))
+    );
+}
+
+#[test]
+fn built_in_effects_are_measured_and_make_colors_of_colors() {
+    let mut measured = 0;
+    for effect in EFFECTS.iter().filter(|effect| has_f32_error(effect)) {
+        let (scene, view, stack) = drawn(effect, []);
+        let render = |stack: &Stack| drop(oracle::render(&scene, &view, stack));
+        let found = precision(&stack, &Arc::default(), render)
+            .unwrap_or_else(|error| panic!("{}: {error}", effect.name));
+        for (_, errors) in &found {
+            let is_finite = errors.iter().all(|error| error.error.is_finite());
+            assert!(is_finite, "{}: {errors:?}", effect.name);
+        }
+        measured += found.len();
+        let (_, crossed) = crossings(&stack, render).expect("it is evaluated");
+        assert!(crossed.is_empty(), "{}: {:?}", effect.name, crossed[0]);
+    }
+    assert!(measured > 30, "{measured}");
+}
+
+#[test]
+fn a_vertex_effect_that_goes_beyond_its_meters_is_told() {
+    let text = |factor: f64| {
+        format!(
+            "// A test.\nstruct Far {{\n    /// A.\n    @range(0, 4, 1) @unit(m) a: f32,\n}}\n\
+             fn far(vertex: Vertex, p: Far) -> Vertex {{\n    var v = vertex;\n    v.offset += v.normal * ({factor:?} * p.a);\n    return v;\n}}\n"
+        )
+    };
+    for (factor, told) in [(1.0, None), (3.0, Some(3.0))] {
+        let effect = read("far.wgsl", "far", &text(factor)).expect("it is valid");
+        let (scene, view, stack) = drawn(&effect, [0.25]);
+        let render = |stack: &Stack| drop(oracle::render(&scene, &view, stack));
+        let (_, found) = overreaching(&stack, render);
+        assert_eq!(
+            found.first().map(|(_, factor)| factor.round()),
+            told,
+            "{found:?}"
+        );
+        let measured = precision(&stack, &Arc::default(), render).expect("it is evaluated");
+        let reach = measured[0]
+            .1
+            .iter()
+            .find(|error| error.quantity == Quantity::Reach);
+        assert_eq!(reach.map(|error| error.error.round()), told);
+    }
 }

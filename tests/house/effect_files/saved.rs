@@ -115,13 +115,7 @@ fn child_that_saves() {
         .expect("links");
         if turn % 4 == 0 {
             let draw = |stack: &Stack| drop(oracle::render(&scene, &view, stack));
-            precision(
-                &stack,
-                Effect::is_of_file,
-                &Arc::new(AtomicBool::new(false)),
-                draw,
-            )
-            .expect("it is evaluated");
+            precision(&stack, &Arc::new(AtomicBool::new(false)), draw).expect("it is evaluated");
             crossings(&stack, draw).expect("it is evaluated");
         }
         if turn == FIRST_SAVES {

@@ -16,7 +16,7 @@ use serde_json::{Value, json};
 use super::model::*;
 
 /// The square, and a node for each light of a list.
-fn lit(lights: &str) -> Model {
+pub fn lit(lights: &str) -> Model {
     let lights: Value = serde_json::from_str(&format!("[{lights}]")).expect("lights");
     let count = lights.as_array().map_or(0, Vec::len);
     let mut model = Model::square()
@@ -40,7 +40,7 @@ fn placed(scene: &Scene, preset: &Preset) -> Vec<PlacedLight> {
 
 #[test]
 fn each_kind_arrives_with_its_color_intensity_range_and_cone() {
-    let scene = lit(r#"{"type":"directional"}, {"type":"point","name":"Lamp","color":[1,0.5,0],"intensity":40,"range":7},
+    let scene = lit(r#"{"type":"directional"}, {"type":"point","name":"Lamp","color":[1,0.5,0],"intensity":4,"range":7},
         {"type":"spot","intensity":2,"spot":{}}, {"type":"spot","spot":{"innerConeAngle":0.25,"outerConeAngle":0.5}}"#)
     .silent();
     let lights = scene.lights.iter();
@@ -50,7 +50,7 @@ fn each_kind_arrives_with_its_color_intensity_range_and_cone() {
     let cone = |inner, outer| LightKind::Spot { inner, outer };
     let wanted = [
         (LightKind::Directional, [1.0; 3], None, None),
-        (LightKind::Point, [40.0, 20.0, 0.0], Some(7.0), None),
+        (LightKind::Point, [4.0, 2.0, 0.0], Some(7.0), None),
         (cone(0.0, FRAC_PI_4), [2.0; 3], None, None),
         (cone(0.25, 0.5), [1.0; 3], None, None),
     ];
@@ -123,7 +123,7 @@ fn what_is_left_out_or_too_strong_is_one_note() {
             lamp,
             "/nodes/1/translation [0.5,0.5,8]",
             1,
-            "its lights are some 3e2 times as strong as what a picture holds; studio.lights = 4e-3 dims them",
+            "its lights are some 3e2 times as strong as what a picture holds; studio.lights = 4e-3 dims them, as in the plain look",
         ),
         (
             r#"{"type":"directional"}"#,

@@ -7,6 +7,7 @@ mod compressed;
 mod corpus;
 mod far;
 mod files;
+mod first_looks;
 mod images;
 mod instancing;
 mod kinds;

@@ -15,6 +15,7 @@ use rasterlab::{
         Ground, GroundShape,
         camera::{Camera, MIN_NEAR_M, Projection},
         parts::{Scope, ShownParts},
+        up::UpAxis,
     },
 };
 use rasterlab_fuzz::stress::{
@@ -206,6 +207,7 @@ pub fn any_preset(rng: &mut Rng) -> Preset {
         parts: ShownParts {
             only: scope(2),
             hidden: scope(1),
+            up: UpAxis::ALL[index(rng, UpAxis::ALL.len())],
             variant: ["", "night and day"][index(rng, 2)].into(),
         },
         room: [0.0, within(rng, 1.0, 100.0)][index(rng, 2)],
@@ -215,6 +217,7 @@ pub fn any_preset(rng: &mut Rng) -> Preset {
         polyline: (0..3 * rng.between(0, 2))
             .map(|at| [within(rng, -1e9, 1e9) as f32, -0.0, at as f32])
             .collect(),
+        origin: Preset::default().origin,
         unit: [LengthUnit::Meter, LengthUnit::Scene][index(rng, 2)],
         bookmarks: bookmarks.collect(),
         camera,

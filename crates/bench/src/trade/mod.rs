@@ -155,55 +155,12 @@ pub async fn trade(
     reference: &Reference<'_>,
     watch: &mut impl Watch,
 ) -> Result<Vec<TradeRow>, RenderError> {
-    const WARM_UP: usize = 3;
-    let pins = preset.accuracy.pins;
-    let combinations = if options.is_one_option_at_a_time {
-        each_alone(pins, &options.axes)
-    } else {
-        combinations(pins, &options.axes)
-    };
-    let (mut entries, mut lacking) = (Vec::new(), Vec::new());
-    let mut is_wanted = true;
-    for (i, &pins) in combinations.iter().enumerate() {
-        let what = words(&pins, &options.axes);
-        is_wanted = is_wanted
-            && watch
-                .goes_on(&Step {
-                    what: &what,
-                    phase: Phase::SetUp,
-                    done: i,
-                    all: combinations.len(),
-                })
-                .await;
-        if !is_wanted {
-            break;
-        }
-        // A option of the joints is settled with the pose that the view holds.
-        let pinned = Preset {
-            accuracy: AccuracyRequest {
-                pins,
-                ..preset.accuracy
-            },
-            ..preset.clone()
-        };
-        let view = pinned.view(scene, options.size);
-        let entry = Entry::new(gpu, preset, scene, view, pins, options.clock, reference);
-        match entry.await {
-            Ok(Some(mut entry)) => {
-                for _ in 0..WARM_UP {
-                    entry.sample(preset, Kept::Alone, entry.frames).await?;
-                    is_wanted = watch.is_wanted();
-                    if !is_wanted {
-                        break;
-                    }
-                }
-                entries.push(entry);
-            }
-            Ok(None) => is_wanted = false,
-            Err(error) if error.is_unsupported() => lacking.push((pins, error.to_string())),
-            Err(error) => return Err(error),
-        }
-    }
+    let subject = (gpu, preset, scene);
+    let SetUp {
+        mut entries,
+        lacking,
+        mut is_wanted,
+    } = set_up_entries(subject, options, reference, watch).await?;
     if is_wanted {
         warm_up::warm_up(
             gpu,
@@ -217,36 +174,8 @@ pub async fn trade(
         )
         .await?;
     }
-    let steps = entries.len() * options.samples;
-    for round in 0..options.samples {
-        for at in 0..entries.len() {
-            let what = words(&entries[at].pins, &options.axes);
-            // A sample that was disturbed is taken again.
-            loop {
-                let step = Step {
-                    what: &what,
-                    phase: Phase::Time,
-                    done: round * entries.len() + at,
-                    all: steps,
-                };
-                is_wanted = is_wanted && watch.goes_on(&step).await;
-                if !is_wanted {
-                    break;
-                }
-                let before = entries[at].marks();
-                let frames = entries[at].frames;
-                entries[at]
-                    .sample(preset, Kept::Interleaved, frames)
-                    .await?;
-                if watch.was_undisturbed() {
-                    break;
-                }
-                entries[at].forget(before);
-            }
-        }
-        if !is_wanted {
-            break;
-        }
+    if is_wanted {
+        sample_in_turn(&mut entries, preset, options, watch).await?;
     }
     let row = |pins: PinnedOptions| TradeRow {
         scene: scene_name.into(),
@@ -279,6 +208,113 @@ pub async fn trade(
         ..row(pins)
     }));
     Ok(rows)
+}
+
+/// What is ready to be measured, what the adapter lacks and why, and whether to go on.
+struct SetUp {
+    entries: Vec<Entry>,
+    lacking: Vec<(PinnedOptions, String)>,
+    is_wanted: bool,
+}
+
+/// Compiles each combination of options and draws it until its times settle.
+async fn set_up_entries(
+    (gpu, preset, scene): (&Arc<Gpu>, &Preset, &Arc<Scene>),
+    options: &TradeOptions,
+    reference: &Reference<'_>,
+    watch: &mut impl Watch,
+) -> Result<SetUp, RenderError> {
+    const WARM_UP: usize = 3;
+    let pins = preset.accuracy.pins;
+    let combinations = if options.is_one_option_at_a_time {
+        each_alone(pins, &options.axes)
+    } else {
+        combinations(pins, &options.axes)
+    };
+    let (mut entries, mut lacking) = (Vec::new(), Vec::new());
+    let mut is_wanted = true;
+    for (i, &pins) in combinations.iter().enumerate() {
+        let what = words(&pins, &options.axes);
+        is_wanted = is_wanted
+            && watch
+                .goes_on(&Step {
+                    what: &what,
+                    phase: Phase::SetUp,
+                    done: i,
+                    all: combinations.len(),
+                })
+                .await;
+        if !is_wanted {
+            break;
+        }
+        // An option of the joints is settled with the pose that the view holds.
+        let pinned = Preset {
+            accuracy: AccuracyRequest {
+                pins,
+                ..preset.accuracy
+            },
+            ..preset.clone()
+        };
+        let view = pinned.view(scene, options.size);
+        let entry = Entry::new(gpu, preset, scene, view, pins, options.clock, reference);
+        match entry.await {
+            Ok(Some(mut entry)) => {
+                for _ in 0..WARM_UP {
+                    entry.sample(preset, Kept::Alone, entry.frames).await?;
+                    is_wanted = watch.is_wanted();
+                    if !is_wanted {
+                        break;
+                    }
+                }
+                entries.push(entry);
+            }
+            Ok(None) => is_wanted = false,
+            Err(error) if error.is_unsupported() => lacking.push((pins, error.to_string())),
+            Err(error) => return Err(error),
+        }
+    }
+    Ok(SetUp {
+        entries,
+        lacking,
+        is_wanted,
+    })
+}
+
+/// Times all entries in turn, so that what slows the machine for a while slows all of them.
+async fn sample_in_turn(
+    entries: &mut [Entry],
+    preset: &Preset,
+    options: &TradeOptions,
+    watch: &mut impl Watch,
+) -> Result<(), RenderError> {
+    let steps = entries.len() * options.samples;
+    for round in 0..options.samples {
+        for at in 0..entries.len() {
+            let what = words(&entries[at].pins, &options.axes);
+            // A sample that was disturbed is taken again.
+            loop {
+                let step = Step {
+                    what: &what,
+                    phase: Phase::Time,
+                    done: round * entries.len() + at,
+                    all: steps,
+                };
+                if !watch.goes_on(&step).await {
+                    return Ok(());
+                }
+                let before = entries[at].marks();
+                let frames = entries[at].frames;
+                entries[at]
+                    .sample(preset, Kept::Interleaved, frames)
+                    .await?;
+                if watch.was_undisturbed() {
+                    break;
+                }
+                entries[at].forget(before);
+            }
+        }
+    }
+    Ok(())
 }
 
 /// Every combination of options on `axes`, the first axis changing slowest.

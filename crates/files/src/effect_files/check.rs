@@ -4,8 +4,10 @@
 use std::sync::Arc;
 
 use naga::{
-    Arena, Module,
-    valid::{ModuleInfo, ValidationFlags, Validator},
+    Arena, Block, Expression, Function, Module, ScalarKind, Statement, TypeInner,
+    valid::{
+        ExpressionError, FunctionError, ModuleInfo, ValidationError, ValidationFlags, Validator,
+    },
 };
 
 use super::{
@@ -58,6 +60,7 @@ pub fn check(parts: Parts<'_>, effect: &Arc<Effect>) -> Result<Checked, EffectEr
         Err(parts.text.whole(message))
     })?;
     check_types(parts, &linked, &module)?;
+    check_pointers(parts, &linked, &module)?;
     translate(&module, &info).map_err(|error| of_translation(parts, &linked, &module, &error))?;
     Ok(Checked { module, linked })
 }
@@ -90,6 +93,25 @@ fn valid(parts: Parts<'_>, linked: &Linked) -> Result<(Module, ModuleInfo), Effe
         // The shortest is the expression at fault; others are the function and what it calls.
         let mut spans: Vec<naga::Span> = error.spans().map(|(span, _)| *span).collect();
         spans.sort_by_key(|span| span.to_range().map_or(usize::MAX, |range| range.len()));
+        if let ValidationError::Function { handle, source, .. } = error.as_inner() {
+            let span = module.functions.get_span(*handle);
+            let message = of_operands(&linked.text, &module.functions[*handle], source);
+            if let Some(message) = message {
+                return error_at(parts, linked, &spans, &message);
+            }
+            if let (FunctionError::InvalidReturnType { expression: None, .. }, Some(range)) =
+                (source, span.to_range())
+            {
+                // Naga points to nothing; the path goes to the end of the function.
+                let end = naga::Span::new(range.end as u32 - 1, range.end as u32);
+                return error_at(
+                    parts,
+                    linked,
+                    &[end],
+                    "a path ends without return, or with one that gives nothing; return the function's result on every path",
+                );
+            }
+        }
         let mut causes = vec![error.as_inner().to_string()];
         let mut cause = std::error::Error::source(error.as_inner());
         while let Some(inner) = cause {
@@ -154,6 +176,107 @@ fn told(causes: &[String]) -> String {
             without_indices(last.split(" (of type ").next().unwrap_or(last))
         }),
         all => all.join(": "),
+    }
+}
+
+/// Numbers of two kinds beside an operator: which is which, and how one becomes the other.
+fn of_operands(text: &str, function: &Function, error: &FunctionError) -> Option<String> {
+    let FunctionError::Expression {
+        source:
+            ExpressionError::InvalidBinaryOperandTypes {
+                lhs_expr,
+                lhs_type,
+                rhs_expr,
+                rhs_type,
+                ..
+            },
+        ..
+    } = error
+    else {
+        return None;
+    };
+    let operand = |handle: naga::Handle<Expression>, inner: &TypeInner| {
+        let range = function.expressions.get_span(handle).to_range()?;
+        let name = match inner.scalar()?.kind {
+            ScalarKind::Float => "f32",
+            ScalarKind::Sint => "i32",
+            ScalarKind::Uint => "u32",
+            _ => return None,
+        };
+        let size = match *inner {
+            TypeInner::Scalar(_) => None,
+            TypeInner::Vector { size, .. } => Some(size as u8),
+            _ => return None,
+        };
+        Some((text.get(range)?.trim(), name, size))
+    };
+    let [left, right] = [(*lhs_expr, lhs_type), (*rhs_expr, rhs_type)]
+        .map(|(handle, inner)| operand(handle, inner));
+    let (left, right) = (left?, right?);
+    if left.1 == right.1 {
+        return None;
+    }
+    // Whole numbers become floats; of two kinds of whole numbers the right one becomes the other.
+    let (kept, changed) = match right.1 {
+        "f32" => (right, left),
+        _ => (left, right),
+    };
+    let call = changed.2.map_or_else(
+        || kept.1.to_owned(),
+        |size| format!("vec{size}<{}>", kept.1),
+    );
+    Some(format!(
+        "{} is {} and {} is {}: write {call}({})",
+        left.0, left.1, right.0, right.1, changed.0
+    ))
+}
+
+/// Refuses pointers to members, which naga's translators do not know.
+fn check_pointers(parts: Parts<'_>, linked: &Linked, module: &Module) -> Result<(), EffectError> {
+    fn find(module: &Module, function: &Function, block: &Block) -> Option<naga::Span> {
+        block.iter().find_map(|statement| match statement {
+            Statement::Block(inner) => find(module, function, inner),
+            Statement::If { accept, reject, .. } => {
+                find(module, function, accept).or_else(|| find(module, function, reject))
+            }
+            Statement::Switch { cases, .. } => cases
+                .iter()
+                .find_map(|case| find(module, function, &case.body)),
+            Statement::Loop {
+                body, continuing, ..
+            } => find(module, function, body).or_else(|| find(module, function, continuing)),
+            Statement::Call {
+                function: called,
+                arguments,
+                ..
+            } => {
+                let taken = module.functions[*called].arguments.iter().zip(arguments);
+                let is_member = |argument: &naga::Handle<Expression>| {
+                    matches!(
+                        function.expressions[*argument],
+                        Expression::Access { .. } | Expression::AccessIndex { .. }
+                    )
+                };
+                taken
+                    .filter(|(taken, argument)| {
+                        module.types[taken.ty].inner.pointer_space().is_some()
+                            && is_member(argument)
+                    })
+                    .map(|(_, argument)| function.expressions.get_span(*argument))
+                    .next()
+            }
+            _ => None,
+        })
+    }
+    let mut functions = module.functions.iter();
+    match functions.find_map(|(_, function)| find(module, function, &function.body)) {
+        Some(span) => Err(error_at(
+            parts,
+            linked,
+            &[span],
+            "a pointer leads to a whole variable, not to a member of one: copy the member into a var, pass a pointer to that, and store it back",
+        )),
+        None => Ok(()),
     }
 }
 

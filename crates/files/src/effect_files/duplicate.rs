@@ -1,7 +1,13 @@
 //! Duplicates: a built-in effect as an effect file of one's own, under another name. It is the text of
 //! the effect with other names.
 
-use super::{declaration::type_name, tokens::tokens, words::LIBRARY};
+use super::{
+    declaration::{self, Author, type_name},
+    error::Text,
+    tokens::tokens,
+    twin::lengths,
+    words::LIBRARY,
+};
 use crate::{
     effects::Effect,
     shader::library::{Library, sections},
@@ -23,12 +29,6 @@ pub fn duplicate(effect: &Effect, name: &str) -> Result<String, String> {
     if hooks.sample.as_ref().is_some_and(|hook| hook.has_setup) {
         return Err("computes a setup for every triangle, which an effect file cannot".into());
     }
-    if hooks.vertex.is_some() {
-        return Err(
-            "moves vertices by more than the sum of its lengths, which an effect file cannot"
-                .into(),
-        );
-    }
     if hooks.casts_shadows {
         return Err("draws the scene from its light, which an effect file cannot".into());
     }
@@ -36,6 +36,22 @@ pub fn duplicate(effect: &Effect, name: &str) -> Result<String, String> {
     let Some(text) = Library::Embedded.text(&file) else {
         return Err("has no text of its own".into());
     };
+    if hooks.vertex.is_some() {
+        let whole = Text {
+            file: &file,
+            text: &text[sections(&text)[0].1.clone()],
+        };
+        let read = declaration::read(&whole, effect.file_stem(), Author::Lab);
+        let reach = read.ok().and_then(|read| read.reach);
+        if reach.as_ref().is_some_and(|reach| reach.takes_radius) {
+            return Err(
+                "moves vertices as far as a model is wide, which an effect file cannot".into(),
+            );
+        }
+        if reach.is_none() && lengths(&effect.fields).next().is_none() {
+            return Err("rounds the places of vertices, which an effect file cannot".into());
+        }
+    }
     // The light that comes with a scene does not shine on an effect file: neither its lights nor the
     // picture of its surroundings.
     let text = &text[sections(&text)[0].1.clone()]

@@ -64,7 +64,7 @@ pub fn evaluated_in(
         let [chosen, single] =
             [precision, Precision::Single].map(|precision| function(Chain::Vertex, precision));
         hooks.vertex = Some(VertexHook {
-            moved: twin::vertex(chosen?, single?, hook.needs_triangle).moved,
+            moved: twin::vertex(chosen?, single?, hook.needs_triangle, None).moved,
             ..hook
         });
     }

@@ -21,7 +21,10 @@ pub use self::{
     duplicate::duplicate,
     error::{EffectError, Place},
     evaluated::{EvaluatedError, evaluated},
-    precision::{ErrorsOfEffect, LargestError, Place as ErrorPlace, Quantity, precision},
+    precision::{
+        ErrorsOfEffect, LargestError, Place as ErrorPlace, Quantity, has_f32_error, overreaching,
+        precision,
+    },
     read::{MAX_BYTES, RESERVED_NAMES, check_name, read, read_beside, stem},
     rewrite::MAX_TURNS,
     soundness::{Crossing, Unsound, crossings},

@@ -3,7 +3,7 @@
 
 use std::sync::{
     Arc, Mutex, MutexGuard, PoisonError, Weak,
-    atomic::{AtomicBool, Ordering},
+    atomic::{AtomicBool, AtomicU64, Ordering},
 };
 
 use glam::{DVec2, DVec3, DVec4};
@@ -13,8 +13,8 @@ use crate::{
     effects::{
         Effect, Stack,
         hooks::{
-            Finish, ImageHook, Picture, Pixel, Sample, SampleHook, Surface, SurfaceFunction,
-            Vertex, VertexHook,
+            Finish, ImageAt, ImageHook, PassHook, Picture, Pixel, Sample, SampleHook, Surface,
+            SurfaceFunction, Vertex, VertexHook,
         },
     },
     evaluator::Precision,
@@ -35,6 +35,8 @@ pub enum Quantity {
     Vertex,
     /// 1 where another decision is made about a sample.
     Sample,
+    /// How many times as far as it states an effect moves a vertex; in f64, too.
+    Reach,
 }
 
 /// Where something was found.
@@ -62,6 +64,8 @@ pub type ErrorsOfEffect = (Arc<Effect>, Vec<LargestError>);
 #[derive(Default)]
 struct Errors {
     cancelled: Arc<AtomicBool>,
+    /// A function of the effect was called.
+    has_run: bool,
     largest: Vec<LargestError>,
 }
 
@@ -137,15 +141,26 @@ impl Errors {
     }
 }
 
-/// Records the errors of the f32 side of the effects of `stack` that `is_probed` while `draw` draws
-/// a picture with the stack that it is given. Once `cancelled` is set, the picture is finished
+/// Is there a function of the effect whose error can be measured?
+pub fn has_f32_error(effect: &Effect) -> bool {
+    let hooks = &effect.hooks;
+    let sample = hooks.sample.as_ref();
+    hooks.surface.is_some()
+        || hooks.image.is_some()
+        || hooks.passes.is_some()
+        || hooks.vertex.is_some()
+        || sample.is_some_and(|hook| !hook.has_setup)
+}
+
+/// Records the errors of the f32 side of the effects of `stack` while `draw` draws a picture with the
+/// stack that it is given. Of passes, that of the last one counts, which writes the picture. An effect
+/// of which no function was called is left out. Once `cancelled` is set, the picture is finished
 /// quickly and nothing is returned.
 ///
 /// # Errors
 /// The text of an effect cannot be evaluated.
 pub fn precision(
     stack: &Stack,
-    is_probed: impl Fn(&Effect) -> bool,
     cancelled: &Arc<AtomicBool>,
     draw: impl FnOnce(&Stack),
 ) -> Result<Vec<ErrorsOfEffect>, EvaluatedError> {
@@ -154,7 +169,7 @@ pub fn precision(
     for enabled in probed
         .0
         .iter_mut()
-        .filter(|enabled| is_probed(&enabled.effect))
+        .filter(|enabled| has_f32_error(&enabled.effect))
     {
         let probe = PrecisionProbe::of(&enabled.effect)?;
         let original = std::mem::replace(&mut enabled.effect, probe.effect.clone());
@@ -167,19 +182,15 @@ pub fn precision(
     for (_, probe) in &probes {
         *locked(&probe.errors) = Errors {
             cancelled: cancelled.clone(),
-            largest: Vec::new(),
+            ..Errors::default()
         };
     }
     draw(&probed);
-    let mut found: Vec<_> = probes
-        .iter()
-        .map(|(effect, probe)| {
-            (
-                effect.clone(),
-                std::mem::take(&mut locked(&probe.errors).largest),
-            )
-        })
-        .collect();
+    let measured = |(effect, probe): &(Arc<Effect>, Arc<PrecisionProbe>)| {
+        let errors = std::mem::take(&mut *locked(&probe.errors));
+        errors.has_run.then(|| (effect.clone(), errors.largest))
+    };
+    let mut found: Vec<_> = probes.iter().filter_map(measured).collect();
     found
         .iter_mut()
         .for_each(|(_, largest)| largest.sort_by_key(|error| error.quantity));
@@ -202,6 +213,9 @@ impl PrecisionProbe {
             }
             if let (Some(exact), Some(single)) = (probes.image, single.image) {
                 hooks.image = Some(probed_image(exact, single, errors.clone()));
+            }
+            if let (Some(exact), Some(single)) = (probes.passes, single.passes) {
+                hooks.passes = Some(probed_passes(exact, single, errors.clone()));
             }
             if let (Some(exact), Some(single)) = (probes.vertex, single.vertex) {
                 hooks.vertex = Some(probed_vertex(exact, single, errors.clone()));
@@ -245,6 +259,7 @@ fn probed_surface(
                 false => (result.normal - other.normal).abs().max_element(),
             };
             let mut errors = locked(&errors);
+            errors.has_run = true;
             errors.record(Quantity::Color, color, place);
             errors.record(Quantity::Normal, normal, place);
         }
@@ -267,7 +282,9 @@ fn probed_image(exact: ImageHook, single: ImageHook, errors: Arc<Mutex<Errors>>)
         for (result, other) in pixels.iter().zip(others) {
             if other.step_offset == 0.0 {
                 let error = color_error(result.color, other.color);
-                locked(&errors).record(Quantity::Color, error, middle(result.x, result.y));
+                let mut errors = locked(&errors);
+                errors.has_run = true;
+                errors.record(Quantity::Color, error, middle(result.x, result.y));
             }
         }
     };
@@ -277,19 +294,111 @@ fn probed_image(exact: ImageHook, single: ImageHook, errors: Arc<Mutex<Errors>>)
     }
 }
 
+fn probed_passes(exact: PassHook, single: PassHook, errors: Arc<Mutex<Errors>>) -> PassHook {
+    let (exact_run, last) = (exact.run.clone(), exact.passes.len() - 1);
+    let run = move |index: usize, pixels: &[ImageAt<'_>], words: &[u32]| {
+        if is_cancelled(&errors) {
+            return vec![DVec4::ZERO; pixels.len()];
+        }
+        let written = exact_run(index, pixels, words);
+        // A text does not see the picture of what surrounds the scene.
+        let is_measured = |at: &ImageAt<'_>| {
+            at.step_offset == 0.0 && index == last && at.input.panorama.is_none()
+        };
+        if pixels.first().is_some_and(is_measured) {
+            let others = (single.run)(index, pixels, words);
+            let mut errors = locked(&errors);
+            errors.has_run = true;
+            for ((at, result), other) in pixels.iter().zip(&written).zip(others) {
+                let error = color_error(in_picture(*result), in_picture(other));
+                errors.record(Quantity::Color, error, middle(at.x as u32, at.y as u32));
+            }
+        }
+        written
+    };
+    PassHook {
+        run: Arc::new(run),
+        ..exact
+    }
+}
+
+/// How many times as far as it states the text behind `hook` moves each vertex before it is held; 0
+/// where that is allowed, or nothing is held.
+fn over_reaches(hook: &VertexHook, given: &[Vertex], words: &[u32]) -> Vec<f64> {
+    let mut moved = given.to_vec();
+    if let Some(unheld) = &hook.unheld {
+        unheld(&mut moved, words);
+    }
+    let limit_m = (hook.max_displacement_m)(0.0, words);
+    let factor = |(moved, given): (Vertex, &Vertex)| {
+        let moved_m = moved.offset.distance(given.offset);
+        // Normals are as long as f32 makes them.
+        match moved_m > 1.0001 * limit_m {
+            true => moved_m / limit_m,
+            false => 0.0,
+        }
+    };
+    moved.into_iter().zip(given).map(factor).collect()
+}
+
+/// The effects of files in `stack` that move a vertex farther than they state while `draw` draws with
+/// the stack that it is given, each with the largest such factor.
+pub fn overreaching<T>(
+    stack: &Stack,
+    draw: impl FnOnce(&Stack) -> T,
+) -> (T, Vec<(Arc<Effect>, f64)>) {
+    let mut watched = stack.clone();
+    let mut watches = Vec::new();
+    for enabled in &mut watched.0 {
+        let effect = enabled.effect.clone();
+        let is_held = |hook: &VertexHook| hook.unheld.is_some();
+        let Some(hook) = effect.hooks.vertex.clone().filter(is_held) else {
+            continue;
+        };
+        // Floats that are not negative are in the order of their bits.
+        let most = Arc::new(AtomicU64::new(0));
+        let mut probe = Effect::clone(&effect);
+        watches.push((effect, most.clone()));
+        let exact = hook.clone();
+        let moved = move |vertices: &mut [Vertex], words: &[u32]| {
+            for factor in over_reaches(&exact, vertices, words) {
+                most.fetch_max(factor.to_bits(), Ordering::Relaxed);
+            }
+            (exact.moved)(vertices, words);
+        };
+        probe.hooks.vertex = Some(VertexHook {
+            moved: Arc::new(moved),
+            ..hook
+        });
+        enabled.effect = Arc::new(probe);
+    }
+    let drawn = draw(&watched);
+    let factor = |(effect, most): (Arc<Effect>, Arc<AtomicU64>)| {
+        let factor = f64::from_bits(most.load(Ordering::Relaxed));
+        (factor > 0.0).then_some((effect, factor))
+    };
+    (drawn, watches.into_iter().filter_map(factor).collect())
+}
+
 fn probed_vertex(exact: VertexHook, single: VertexHook, errors: Arc<Mutex<Errors>>) -> VertexHook {
-    let exact_moved = exact.moved.clone();
+    let measured = exact.clone();
     let moved = move |vertices: &mut [Vertex], words: &[u32]| {
         if is_cancelled(&errors) {
             return;
         }
         let mut others = vertices.to_vec();
-        exact_moved(vertices, words);
+        let reaches = over_reaches(&measured, vertices, words);
+        (measured.moved)(vertices, words);
         (single.moved)(&mut others, words);
-        for (result, other) in vertices.iter().zip(others) {
+        let mut errors = locked(&errors);
+        errors.has_run = true;
+        for ((result, other), reach) in vertices.iter().zip(others).zip(reaches) {
             let error = (result.offset - other.offset).abs().max_element();
             let place = Place::World(result.position + result.offset);
-            locked(&errors).record(Quantity::Vertex, error, place);
+            errors.record(Quantity::Vertex, error, place);
+            if measured.unheld.is_some() {
+                errors.record(Quantity::Reach, reach, place);
+            }
         }
     };
     VertexHook {
@@ -307,6 +416,7 @@ fn probed_sample(exact: SampleHook, single: SampleHook, errors: Arc<Mutex<Errors
             return;
         }
         (single.is_drawn)(samples, words, &mut others);
+        locked(&errors).has_run = true;
         for ((s, drawn), other) in samples.iter().zip(drawn).zip(others) {
             if *drawn != other {
                 locked(&errors).record(Quantity::Sample, 1.0, middle(s.x, s.y));

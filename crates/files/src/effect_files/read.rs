@@ -175,10 +175,11 @@ fn read_anew(
     )?;
     let fields = &declaration.parameters.fields;
     if let Some(vertex) = &declaration.hooks.vertex
+        && declaration.reach.is_none()
         && twin::lengths(fields).next().is_none()
     {
         let name = declaration.tokens.iter().find(|token| token.text == vertex);
-        let message = "a vertex effect needs an f32 parameter with @unit(m): it moves a vertex by at most the sum of these lengths";
+        let message = "a vertex effect needs an f32 parameter with @unit(m), since it moves a vertex by at most the sum of these lengths, or @reach before a function that says how far";
         return Err(text.at_any(name, message));
     }
     let rewritten = rewrite::rewritten(stem, written, &declaration);
@@ -243,11 +244,21 @@ fn read_anew(
     let hooks = &mut effect.hooks;
     if let Some(name) = &source.functions.vertex {
         let needs_triangle = reads_triangle(&declaration.tokens);
-        hooks.vertex = Some(twin::vertex(
+        let reach = declaration.reach.as_ref().map(|reach| {
+            let name = EffectSource::unique(stem, &reach.name);
+            Ok::<_, EffectError>((function(&name, Precision::Double)?, reach.takes_radius))
+        });
+        let mut hook = twin::vertex(
             function(name, Precision::Double)?,
             function(name, Precision::Single)?,
             needs_triangle,
-        ));
+            reach.transpose()?,
+        );
+        if let Some(written) = &declaration.hooks.vertex {
+            let name = EffectSource::unique(stem, written);
+            hook.unheld = Some(twin::moving(function(&name, Precision::Double)?));
+        }
+        hooks.vertex = Some(hook);
     }
     if let Some(name) = &source.functions.sample {
         hooks.sample = Some(twin::sample(function(name, Precision::Double)?));

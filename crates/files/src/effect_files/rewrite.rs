@@ -3,7 +3,10 @@
 
 use std::fmt::Write;
 
-use super::{declaration::Declaration, twin::lengths};
+use super::{
+    declaration::Declaration,
+    twin::{MOST_REACH_M, lengths},
+};
 use crate::effects::{EffectSource, HookFunctions};
 
 /// Turns that the loops of one effect may take together in one invocation; every loop ends then.
@@ -193,7 +196,10 @@ fn append_hooks(
             generated(stem, hook),
         );
         let body = match hook {
-            "vertex" => format!("    let moved = {called}(v, p);\n{}", limited(declaration)),
+            "vertex" => format!(
+                "    let moved = {called}(v, p);\n{}",
+                limited(stem, declaration)
+            ),
             _ => format!("    return {called}(v, p);\n"),
         };
         write!(
@@ -242,21 +248,27 @@ pub fn in_names_of_author(stem: &str, declaration: &Declaration<'_>, message: &s
     message.replace(&generated(stem, "turns"), "the counter of turns")
 }
 
-/// The end of a vertex hook: it changes offset and normal alone, and the offset by at most the sum
-/// of the lengths.
-fn limited(declaration: &Declaration<'_>) -> String {
-    let lengths: Vec<String> = lengths(&declaration.parameters.fields)
-        .map(|field| format!("abs(p.{})", field.name))
-        .collect();
+/// The end of a vertex hook: it changes offset and normal alone, and the offset by at most what the
+/// function behind `@reach` says, else the sum of the lengths.
+fn limited(stem: &str, declaration: &Declaration<'_>) -> String {
+    let limit = match &declaration.reach {
+        Some(reach) => {
+            let reach = format!("{}(p)", EffectSource::unique(stem, &reach.name));
+            format!("select(0.0, {reach}, {reach} >= 0.0 && {reach} <= {MOST_REACH_M:e})")
+        }
+        None => lengths(&declaration.parameters.fields)
+            .map(|field| format!("abs(p.{})", field.name))
+            .collect::<Vec<_>>()
+            .join(" + "),
+    };
     format!(
         "    let change = clamp(moved.offset - v.offset, vec3f(-1e12), vec3f(1e12));
     let distance = length(change);
-    let limit = {};
+    let limit = {limit};
     var kept = v;
     kept.normal = moved.normal;
     kept.offset = select(moved.offset, v.offset + change * (limit / max(distance, 1e-30)), distance > limit);
     return kept;
-",
-        lengths.join(" + ")
+"
     )
 }

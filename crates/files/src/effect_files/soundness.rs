@@ -1,5 +1,5 @@
 //! Soundness probes: effects that do what another effect does, and record on the way where its
-//! result stops being a color.
+//! result stops being a color, or what a pass writes stops being finite.
 
 use std::sync::{
     Arc, Mutex, Weak,
@@ -15,7 +15,10 @@ use super::{
 use crate::{
     effects::{
         Effect, Stack,
-        hooks::{FinishFunction, ImageHook, Picture, Pixel, Surface, SurfaceFunction},
+        hooks::{
+            FinishFunction, Hooks, ImageAt, ImageHook, PassHook, Picture, Pixel, Signs, Surface,
+            SurfaceFunction,
+        },
     },
     evaluator::Precision,
     params::Field,
@@ -94,7 +97,7 @@ fn of_surface(s: &Surface) -> Outcome {
 /// anything that shades its samples.
 ///
 /// # Errors
-/// The text of an effect of a file cannot be evaluated in f32.
+/// The text of an effect cannot be evaluated in f32.
 pub fn crossings<T>(
     stack: &Stack,
     draw: impl FnOnce(&Stack) -> T,
@@ -128,19 +131,13 @@ impl SoundnessProbe {
     fn of(effect: &Arc<Effect>) -> Result<Arc<Self>, EvaluatedError> {
         static KNOWN: Probes<SoundnessProbe> = Mutex::new(Vec::new());
         kept(&KNOWN, effect, || {
-            // The kernels are f32, and the text says what they do. Built-in effects have an f64
-            // function that is not their text.
-            let single = if effect.is_of_file() {
-                Some(evaluated_in(
-                    &Library::of_process(),
-                    effect,
-                    Precision::Single,
-                )?)
-            } else {
-                None
+            // The kernels are f32, and the text says what they do.
+            let is_colored = effect.hooks.surface.is_some() || effect.hooks.image.is_some();
+            let single = match is_colored {
+                true => evaluated_in(&Library::of_process(), effect, Precision::Single)?,
+                false => Hooks::default(),
             };
-            let (single_surface, single_image) =
-                single.map_or((None, None), |hooks| (hooks.surface, hooks.image));
+            let (single_surface, single_image) = (single.surface, single.image);
             let recorder = Arc::new(Recorder::default());
             let mut hooks = effect.hooks.clone();
             if let Some(exact) = hooks.surface.clone() {
@@ -213,6 +210,32 @@ impl SoundnessProbe {
                 };
                 hooks.image = Some(ImageHook {
                     finish: Arc::new(finish),
+                    ..exact
+                });
+            }
+            if let Some(exact) = hooks.passes.clone() {
+                let (recorder, probed) = (recorder.clone(), Arc::downgrade(effect));
+                let run = exact.run.clone();
+                let run = move |index: usize, pixels: &[ImageAt<'_>], words: &[u32]| {
+                    let written = run(index, pixels, words);
+                    if recorder.is_on.load(Ordering::Relaxed) {
+                        let judged = pixels.iter().zip(&written).filter(|(at, _)| {
+                            at.step_offset == 0.0 && at.input.signs == Signs::None
+                        });
+                        for (at, color) in judged {
+                            // What a pass writes may be data, so a negative number is none's fault.
+                            let made = |color: DVec4| Unsound::of(color.abs(), &[]);
+                            let retried =
+                                |_: bool, words: &[u32]| made(run(index, &[*at], words)[0]);
+                            let pixel = [at.x, at.y].map(|place| place as u32 * at.scale);
+                            let of_both = [made(*color), None];
+                            recorder.record(&probed, pixel, of_both, &retried, words);
+                        }
+                    }
+                    written
+                };
+                hooks.passes = Some(PassHook {
+                    run: Arc::new(run),
                     ..exact
                 });
             }

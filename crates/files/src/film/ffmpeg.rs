@@ -40,11 +40,27 @@ impl Container {
         matches!(self, Self::Mp4)
     }
 
+    /// The rate at which a film of `fps` frames a second is drawn. A GIF counts hundredths of a
+    /// second, and players slow down a frame that stays for fewer than two.
+    pub const fn fps(self, fps: f64) -> f64 {
+        match self {
+            Self::Gif if fps > 50.0 => 50.0,
+            _ => fps,
+        }
+    }
+
+    /// What to say of a film of `fps` frames a second that has another rate as this kind.
+    pub fn fps_note(self, fps: f64) -> Option<String> {
+        (self.fps(fps) < fps).then(|| {
+            format!("A GIF shows at most 50 frames a second, so the film has 50 instead of {fps}.")
+        })
+    }
+
     /// Everything in front of the name of the file. Frames come from stdin as rows of RGBA bytes.
     pub fn arguments(
         self,
         [width, height]: [u32; 2],
-        duration_s: [u16; 2],
+        duration_s: [u32; 2],
         frames: usize,
         is_looping: bool,
     ) -> Vec<String> {
@@ -54,9 +70,10 @@ impl Container {
              -framerate {denominator}/{numerator} -i pipe:0 -an -map_metadata -1 -fflags +bitexact -flags:v +bitexact"
         );
         // Rec. 709 is what players assume; without the filter ffmpeg would convert with the matrix
-        // of standard television.
-        let colors = "-vf scale=out_color_matrix=bt709:out_range=tv:flags=accurate_rnd+full_chroma_int,format=yuv420p \
-                      -colorspace bt709 -color_primaries bt709 -color_trc bt709 -color_range tv";
+        // of standard television. The frames are tagged and not the encoder, because newer
+        // versions of ffmpeg let an encoder take its tags from the first frame.
+        let colors = "-vf scale=out_color_matrix=bt709:out_range=tv:flags=accurate_rnd+full_chroma_int,format=yuv420p,\
+                      setparams=color_primaries=bt709:color_trc=bt709:colorspace=bt709:range=tv";
         let bytes = 4 * u64::from(width) * u64::from(height) * frames as u64;
         let output = match self {
             Self::Mp4 => {

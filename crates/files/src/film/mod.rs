@@ -18,7 +18,7 @@ pub use error::FilmError;
 pub use ffmpeg::{Container, find_ffmpeg};
 pub use frames::{FrameJob, frame_paths};
 pub use production::{Observer, Outputs, Painter, Production};
-pub use schedule::{Schedule, Times};
+pub use schedule::{Schedule, Times, read_rate};
 pub use story::Film;
 pub use turntable::Turntable;
 pub use video::VideoTarget;

@@ -109,7 +109,7 @@ impl Production {
             let options = VideoOptions {
                 size: film.size(),
                 frames: jobs.len(),
-                duration_s: film.schedule.frame_duration_s(),
+                duration_s: film.schedule.video_frame_duration_s(),
                 is_looping: film.is_looping(),
             };
             reels.push(Reel::Video(

@@ -102,21 +102,33 @@ impl Schedule {
     /// How long each frame stays: the closest fraction of seconds that APNG can hold, numerator and
     /// denominator.
     pub fn frame_duration_s(&self) -> [u16; 2] {
-        closest_fraction(self.fps)
+        closest_fraction(self.fps, u16::MAX.into()).map(|part| part as u16)
+    }
+
+    /// The same for a video, which holds 120000/1001 frames a second, too.
+    pub fn video_frame_duration_s(&self) -> [u32; 2] {
+        closest_fraction(self.fps, u32::MAX)
     }
 }
 
-/// The closest fraction to the inverse of `fps` in two words of 16 bits.
-fn closest_fraction(fps: f64) -> [u16; 2] {
+/// Frames a second from `30`, `29.97` or `30000/1001`; none for anything else.
+pub fn read_rate(text: &str) -> Option<f64> {
+    let (count, seconds) = text.split_once('/').unwrap_or((text, "1"));
+    let [count, seconds] = [count, seconds].map(|part| part.trim().parse::<f64>().ok());
+    Some(count? / seconds?)
+}
+
+/// The closest fraction to the inverse of `fps`, with a denominator of at most `most`.
+fn closest_fraction(fps: f64, most: u32) -> [u32; 2] {
     let mut best = ([1, 1], f64::INFINITY);
-    for numerator in 1..=1001u16 {
+    for numerator in 1..=1001u32 {
         let denominator = (f64::from(numerator) * fps).round();
-        if !(1.0..=65_535.0).contains(&denominator) {
+        if !(1.0..=f64::from(most)).contains(&denominator) {
             continue;
         }
         let error = (f64::from(numerator) / denominator * fps - 1.0).abs();
         if error < best.1 - 1e-12 {
-            best = ([numerator, denominator as u16], error);
+            best = ([numerator, denominator as u32], error);
         }
     }
     best.0
@@ -169,10 +181,14 @@ mod tests {
 
     #[test]
     fn a_rate_is_kept_as_a_fraction() {
-        let fractions = [30.0, 29.97, 0.5, 1000.0].map(closest_fraction);
-        assert_eq!(fractions, [[1, 30], [100, 2997], [2, 1], [1, 1000]]);
-        let [numerator, denominator] = closest_fraction(23.976).map(f64::from);
+        let closest = |fps| closest_fraction(fps, 65_535);
+        let fractions = [30.0, 29.97, 0.5, 1000.0, 30_000.0 / 1001.0].map(closest);
+        let exact = [[1, 30], [100, 2997], [2, 1], [1, 1000], [1001, 30_000]];
+        assert_eq!(fractions, exact);
+        let [numerator, denominator] = closest(23.976).map(f64::from);
         assert!((numerator / denominator * 23.976 - 1.0).abs() < 1e-9);
-        assert!(closest_fraction(0.001)[1] == 1);
+        assert!(closest(0.001)[1] == 1);
+        let fast = 120_000.0 / 1001.0;
+        assert_eq!(closest_fraction(fast, u32::MAX), [1001, 120_000]);
     }
 }

@@ -50,7 +50,7 @@ impl Turntable {
 /// The automatic camera from a distance that shows the scene from all sides; none if the preset or
 /// the scene has a camera.
 pub fn all_around(preset: &Preset, scene: &Scene) -> Option<Camera> {
-    if preset.camera.is_some() || !scene.cameras.is_empty() {
+    if preset.camera.is_some() || preset.camera_of(scene).is_some() {
         return None;
     }
     let [width, height] = preset.output.size.map(|side| f64::from(side.max(1)));
@@ -61,15 +61,16 @@ pub fn all_around(preset: &Preset, scene: &Scene) -> Option<Camera> {
     let framed = Camera::around(
         &turned_all_around(&points, center),
         FRAMING_DIRECTION,
-        width / height,
+        preset.frame(width / height),
     );
     // The camera goes around the axis of the scene.
     let axis = center.with_y(framed.target.y);
-    Some(Camera {
+    let around = Camera {
         eye: framed.eye + (axis - framed.target),
         target: axis,
         ..framed
-    })
+    };
+    Some(around.counted_from(preset.origin))
 }
 
 #[cfg(test)]

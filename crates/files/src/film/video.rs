@@ -67,7 +67,7 @@ pub struct VideoOptions {
     pub size: [u32; 2],
     pub frames: usize,
     /// How long each frame stays: a fraction of seconds, numerator and denominator.
-    pub duration_s: [u16; 2],
+    pub duration_s: [u32; 2],
     /// Starts again after its end, where the kind can say so.
     pub is_looping: bool,
 }

@@ -10,6 +10,7 @@ use toml_edit::{DocumentMut, Item, Table};
 use super::{
     atomic::{Existing, write_atomically},
     error::{Position, PresetError},
+    gallery::{PLAIN, plain},
     look::Look,
     write,
 };
@@ -18,7 +19,11 @@ use crate::{
     effects::Effect,
     host::{disk, stays_inside},
     preset::{Preset, SceneSource},
+    scene::{Scene, UpAxis},
 };
+
+/// The id of a preset that was pasted.
+pub(super) const PASTED: &str = "pasted";
 
 /// The table that holds the texts of effects that a shared preset brings.
 pub(super) const EFFECT_FILES: &str = "effect_files";
@@ -79,12 +84,52 @@ impl PresetFile {
         }
     }
 
-    /// The default preset for a model or built-in scene that was chosen: it stands in a studio.
+    /// The preset of a model or built-in scene that was chosen, in the plain look. What it leaves open
+    /// is found when its scene has loaded: see [`PresetFile::settle`].
     pub fn of_scene(id: &str, scene: SceneSource) -> Self {
+        let plain = plain();
+        let mut preset = Preset {
+            name: id.into(),
+            about: String::new(),
+            tags: Vec::new(),
+            test: None,
+            ..plain.preset.clone()
+        };
+        preset.parts.up = match scene {
+            SceneSource::File(_) => UpAxis::Auto,
+            SceneSource::Builtin(_) => UpAxis::Y,
+        };
+        preset.scene = scene;
         Self {
             chose_scene: true,
-            ..Self::new(id, Preset::studio(id, scene))
+            look: Some(Look::of(plain)),
+            ..Self::new(id, preset)
         }
+    }
+
+    /// Does it show its scene in the plain look, as it came?
+    pub fn is_plain(&self) -> bool {
+        let is_plain = |look: &Look| look.path.is_none() && look.id == PLAIN;
+        self.path.is_none() && self.look.as_ref().is_some_and(is_plain)
+    }
+
+    /// Is something open that its scene tells?
+    pub fn is_unsettled(&self) -> bool {
+        self.preset.parts.up == UpAxis::Auto || self.is_plain()
+    }
+
+    /// Takes from its scene, which has loaded, the axis that is up, and in the plain look the strength
+    /// that lights which are far too strong are dimmed to, if it `may_dim` them.
+    pub fn settle(&mut self, scene: &Scene, may_dim: bool) {
+        self.preset.parts.up = self.preset.parts.up.or(scene.up);
+        if may_dim && self.is_plain() {
+            self.preset.dim_lights(scene);
+        }
+    }
+
+    /// Did it come as a line of text, so that no file has it?
+    pub fn is_pasted(&self) -> bool {
+        self.path.is_none() && self.id == PASTED
     }
 
     /// The name, or the id of a preset without a name.

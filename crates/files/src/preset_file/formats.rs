@@ -5,7 +5,7 @@ use std::path::Path;
 use crate::{
     host::model,
     scene::{
-        Scene,
+        Scene, UpAxis,
         gltf::{self, LoadError},
         memory::MemoryBudget,
         mesh_files::{self, LoadModel},
@@ -23,9 +23,10 @@ pub struct ModelFormat {
 
 /// What reads a format.
 enum Reader {
-    /// Its materials may have variants.
+    /// Its materials may have variants, and its +y is up.
     Gltf,
-    Mesh(LoadModel),
+    /// With the axis that is up in most files.
+    Mesh(LoadModel, UpAxis),
 }
 
 /// Every format that is read. `tests/house/registry.rs` compares the texts that name them.
@@ -49,17 +50,18 @@ pub const MODEL_FORMATS: &[ModelFormat] = &[
     ModelFormat {
         extension: "obj",
         beside: &["mtl", "png", "jpg", "jpeg", "webp"],
-        reader: Reader::Mesh(mesh_files::load_obj),
+        reader: Reader::Mesh(mesh_files::load_obj, UpAxis::Y),
     },
     ModelFormat {
         extension: "stl",
         beside: &[],
-        reader: Reader::Mesh(mesh_files::load_stl),
+        // Of parts that are made, which lie on the bed of a machine.
+        reader: Reader::Mesh(mesh_files::load_stl, UpAxis::Z),
     },
     ModelFormat {
         extension: "ply",
         beside: &["png", "jpg", "jpeg", "webp"],
-        reader: Reader::Mesh(mesh_files::load_ply),
+        reader: Reader::Mesh(mesh_files::load_ply, UpAxis::Y),
     },
     ModelFormat {
         extension: "xyz",
@@ -94,7 +96,20 @@ impl ModelFormat {
             Reader::Gltf => model::load_as(path, budget, |model, budget, read| {
                 gltf::load_variant(model, budget, variant, read)
             }),
-            Reader::Mesh(load) => model::load_as(path, budget, load),
+            Reader::Mesh(load, _) => model::load_as(path, budget, load),
+        }
+    }
+
+    /// The axis that is up in a scene of this format, as its file has it.
+    pub fn guess_up(&self, scene: &Scene) -> UpAxis {
+        let names = scene.named_nodes.iter().map(|node| node.name.as_str());
+        match self.reader {
+            Reader::Gltf => UpAxis::Y,
+            Reader::Mesh(_, usual) => UpAxis::guessed(
+                &scene.bounds(),
+                [&*scene.name].into_iter().chain(names),
+                usual,
+            ),
         }
     }
 

@@ -1,7 +1,10 @@
 //! Gallery: every available preset. Folders are searched in order and the first preset of an id
 //! wins.
 
-use std::path::{Path, PathBuf};
+use std::{
+    path::{Path, PathBuf},
+    sync::LazyLock,
+};
 
 use etcetera::base_strategy::{BaseStrategy as _, choose_native_strategy};
 use include_dir::{Dir, File, include_dir};
@@ -20,6 +23,21 @@ const MAX_NEAR: usize = 3;
 
 /// The presets inside the binary.
 pub static BUILTIN_DIR: Dir<'static> = include_dir!("$CARGO_MANIFEST_DIR/../../presets");
+
+/// The id of the look of a model that is opened without another.
+pub const PLAIN: &str = "plain";
+
+/// The preset of that look, as it is inside the binary.
+pub fn plain() -> &'static PresetFile {
+    static FILE: LazyLock<PresetFile> = LazyLock::new(|| {
+        let file = BUILTIN_DIR.get_file(format!("{PLAIN}.toml"));
+        let entry = file.map(builtin_entry).expect("the gallery has it");
+        entry
+            .preset_file
+            .expect("it is valid, as every preset of the gallery")
+    });
+    &FILE
+}
 
 /// Where a preset was found, in order of precedence.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, serde::Serialize)]
@@ -290,7 +308,9 @@ fn near_presets(what: &str, entries: &[GalleryEntry]) -> String {
         title => format!("{:?} ({title})", entry.id),
     };
     let near: Vec<String> = near.iter().take(MAX_NEAR).map(described).collect();
-    if near.is_empty() {
+    if near.is_empty() && cfg!(target_arch = "wasm32") {
+        String::new()
+    } else if near.is_empty() {
         "; rasterlab list presets shows all of them".into()
     } else {
         format!("; did you mean {}?", near.join(" or "))

@@ -58,7 +58,11 @@ impl PresetFile {
         };
         let camera = |preset: &Preset, bounds: &Bounds| {
             preset.camera.unwrap_or_else(|| {
-                Camera::around(&bounds.corners(), FRAMING_DIRECTION, aspect(preset))
+                Camera::around(
+                    &bounds.corners(),
+                    FRAMING_DIRECTION,
+                    preset.frame(aspect(preset)),
+                )
             })
         };
         let own_camera = scene.map_or_else(
@@ -122,14 +126,9 @@ impl PresetFile {
 
     /// The preset that the look comes from; none where it is only the default look of a scene.
     fn origin(&self) -> Option<Look> {
-        let own = || Look {
-            id: self.id.clone(),
-            path: self.path.clone(),
-            title: self.title().to_owned(),
-        };
         self.look
             .clone()
-            .or_else(|| (!self.chose_scene || self.path.is_some()).then(own))
+            .or_else(|| (!self.chose_scene || self.path.is_some()).then(|| Look::of(self)))
     }
 
     /// Does the preset lie at `path`, or is it the built-in one called `id`? A look that has landed

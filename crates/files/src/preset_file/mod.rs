@@ -52,7 +52,8 @@ pub use file::{MAX_NAME, PresetFile, normalized, save, to_shared_toml, to_toml};
 pub use formats::{MODEL_FORMATS, ModelFormat};
 pub use frame_status::{FrameStatus, frame_status};
 pub use gallery::{
-    BUILTIN_DIR, Folders, GalleryEntry, Origin, gallery, open, user_effects_folder, user_folder,
+    BUILTIN_DIR, Folders, GalleryEntry, Origin, PLAIN, gallery, open, plain, user_effects_folder,
+    user_folder,
 };
 pub use goldens::{golden_folder, golden_paths};
 pub use hash::{Fnv, hex, preset_hash, scene_hash};

@@ -11,7 +11,7 @@ use crate::{
     host::disk,
     params::legible_line,
     preset::{MissingInScene, Preset, SceneSource},
-    scene::{Bounds, Scene, builtin, gltf},
+    scene::{Bounds, Scene, UpAxis, builtin, gltf, parts::ShownParts},
 };
 
 /// Why the scene of a preset is not available.
@@ -23,9 +23,8 @@ pub enum SceneError {
     Absent { path: String },
     #[error(transparent)]
     Model(#[from] gltf::LoadError),
-    #[error(
-        "scene.only and scene.hidden leave no part of the scene; show some part of it (rasterlab parts SCENE lists them)"
-    )]
+    #[error("scene.only and scene.hidden leave no part of the scene; show some part of it{how}",
+        how = if cfg!(target_arch = "wasm32") { "" } else { " (rasterlab parts SCENE lists them)" })]
     NothingShown,
     #[error("{file}, the picture of scene.surroundings, {reason}")]
     Surroundings { file: String, reason: String },
@@ -49,7 +48,7 @@ pub fn load_scene_beside(
         file: legible_line(surroundings::shown(&preset.surroundings)),
         reason,
     })?;
-    let mut scene = load_source(&preset.scene, &preset.parts.variant, for_model)?;
+    let mut scene = load_source(&preset.scene, &preset.parts, for_model)?;
     if let Some(surroundings) = surroundings {
         scene.panorama = Some(surroundings.panorama);
         scene.notes.extend(surroundings.note);
@@ -72,18 +71,24 @@ pub fn load_scene_beside(
 /// room. The scene is built or loaded for that.
 pub fn scene_bounds(
     source: &SceneSource,
+    up: UpAxis,
     preset_path: Option<&Path>,
 ) -> Result<Bounds, SceneError> {
-    Ok(load_source(source, "", preset_path)?.subject_bounds(None))
+    let shown = ShownParts {
+        up,
+        ..ShownParts::default()
+    };
+    Ok(load_source(source, &shown, preset_path)?.subject_bounds(None))
 }
 
+/// The whole scene of a source, with the variant and the axis up that `shown` names.
 fn load_source(
     source: &SceneSource,
-    variant: &str,
+    ShownParts { variant, up, .. }: &ShownParts,
     preset_path: Option<&Path>,
 ) -> Result<Scene, SceneError> {
     match source {
-        SceneSource::Builtin(query) => Ok(builtin::build(query)?),
+        SceneSource::Builtin(query) => Ok(builtin::build(query)?.turned_up(up.or(UpAxis::Y))),
         SceneSource::File(model) => {
             let path = model_path(model, preset_path);
             if !disk::exists(&path) {
@@ -93,7 +98,18 @@ fn load_source(
             }
             // What has another extension is loaded too, if it is one by its content.
             let format = ModelFormat::of(&path).unwrap_or(&MODEL_FORMATS[0]);
-            Ok(format.load_variant(&path, variant)?)
+            let mut scene = format.load_variant(&path, variant)?;
+            if *up != UpAxis::Auto {
+                return Ok(scene.turned_up(*up).counted());
+            }
+            let up = format.guess_up(&scene);
+            if up != UpAxis::Y {
+                let up = up.word();
+                scene.notes.push(format!(
+                    "its {up} is taken to be up, guessed from its format, its names and how it stands; scene.up says otherwise"
+                ));
+            }
+            Ok(scene.turned_up(up).counted())
         }
     }
 }

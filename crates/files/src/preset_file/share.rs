@@ -8,7 +8,7 @@ use flate2::{Compression, read::DeflateDecoder, write::DeflateEncoder};
 
 use super::{
     error::PresetError,
-    file::{PresetFile, normalized, to_shared_toml},
+    file::{PASTED, PresetFile, normalized, to_shared_toml},
     load::{MAX_BYTES, parse_file},
 };
 use crate::preset::SceneSource;
@@ -63,5 +63,5 @@ pub fn from_line(line: &str) -> Result<PresetFile, PresetError> {
         return Err(not_ours("it unpacks to more than 1 MiB"));
     }
     let toml = String::from_utf8(toml).map_err(|_| not_ours("it is not text"))?;
-    Ok(parse_file(&toml, "pasted", "the pasted text")?.held_to_folder())
+    Ok(parse_file(&toml, PASTED, "the pasted text")?.held_to_folder())
 }

@@ -36,8 +36,12 @@ pub struct AdapterSummary {
 /// Why no device could be had.
 #[derive(Debug, thiserror::Error)]
 pub enum OpenError {
-    #[error(
-        "no GPU adapter was found; install a Vulkan driver (Debian: mesa-vulkan-drivers) or use --adapter cpu"
+    #[cfg_attr(target_arch = "wasm32", error("the browser offers no graphics device"))]
+    #[cfg_attr(
+        not(target_arch = "wasm32"),
+        error(
+            "no GPU adapter was found; install a Vulkan driver (Debian: mesa-vulkan-drivers) or use --adapter cpu"
+        )
     )]
     None,
     #[error("no adapter is called {wanted:?}; there are: {there}")]

@@ -7,22 +7,16 @@ pub struct Canvas {
     surface: wgpu::Surface<'static>,
     /// Pixels; 0 before the first picture.
     size: [u32; 2],
-    /// The page shows through where the picture has alpha 0.
-    is_transparent: bool,
 }
 
 impl Canvas {
-    pub fn new(
-        canvas: web_sys::HtmlCanvasElement,
-        is_transparent: bool,
-    ) -> Result<Self, wgpu::CreateSurfaceError> {
+    pub fn new(canvas: web_sys::HtmlCanvasElement) -> Result<Self, wgpu::CreateSurfaceError> {
         let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
         descriptor.backends = wgpu::Backends::BROWSER_WEBGPU;
         let target = wgpu::SurfaceTarget::Canvas(canvas);
         Ok(Self {
             surface: wgpu::Instance::new(descriptor).create_surface(target)?,
             size: [0; 2],
-            is_transparent,
         })
     }
 
@@ -58,11 +52,7 @@ impl Canvas {
             height,
             present_mode: wgpu::PresentMode::Fifo,
             desired_maximum_frame_latency: 2,
-            alpha_mode: if self.is_transparent {
-                wgpu::CompositeAlphaMode::PreMultiplied
-            } else {
-                wgpu::CompositeAlphaMode::Opaque
-            },
+            alpha_mode: wgpu::CompositeAlphaMode::Opaque,
             view_formats: Vec::new(),
             color_space: Default::default(),
         }

@@ -21,6 +21,7 @@ use crate::{
     plan::AccuracyRequest,
     resources::buffers,
     scene::view::View,
+    shader::KernelKey,
 };
 
 /// How often a picture is drawn again because a queue overflowed.
@@ -148,37 +149,7 @@ impl Renderer {
             ..picture
         };
         let [width, height] = self.picture.frame()?.layout.size;
-        let (triangle_id, stored_keys) = picture.visibility().await?;
-        let depth_keys = stored_keys
-            .into_iter()
-            .map(|stored| key.depth_bits(stored))
-            .collect();
-        let resolved = picture.picture(BufferId::Color, [width, height]).await?;
-        let (color, resolved) = if key.has_passes() {
-            let finished = picture.picture(BufferId::Finished, [width, height]).await?;
-            (finished, Some(resolved))
-        } else {
-            (resolved, None)
-        };
-        let kept = match key.kept_pass() {
-            Some(pass) => Some(picture.kept(pass.size([width, height])).await?),
-            None => None,
-        };
-        let frame = Frame {
-            width,
-            height,
-            triangle_id,
-            depth_key: depth_keys,
-            color,
-            resolved,
-            kept,
-            layer_sums: picture.layer_sums().await?,
-            glass: picture.glass().await?,
-            dots: picture.dot_strengths().await?,
-            counters,
-            depth_rounding: key.depth_rounding(),
-            depth_keys_are_approximate: key.options.visibility == Visibility::Race,
-        };
+        let frame = read_frame(&picture, &key, [width, height], counters).await?;
         let previous = if key.reads_previous() {
             Some(picture.picture(BufferId::Previous, [width, height]).await?)
         } else {
@@ -361,4 +332,44 @@ impl Renderer {
         }
         Err(RenderError::Overflow(lost))
     }
+}
+
+/// All that a picture of `size` pixels shows, read back from the buffers of its view.
+async fn read_frame(
+    picture: &Readback<'_>,
+    key: &KernelKey,
+    size: [u32; 2],
+    counters: Counters,
+) -> Result<Frame, RenderError> {
+    let (triangle_id, stored_keys) = picture.visibility().await?;
+    let depth_keys = stored_keys
+        .into_iter()
+        .map(|stored| key.depth_bits(stored))
+        .collect();
+    let resolved = picture.picture(BufferId::Color, size).await?;
+    let (color, resolved) = if key.has_passes() {
+        let finished = picture.picture(BufferId::Finished, size).await?;
+        (finished, Some(resolved))
+    } else {
+        (resolved, None)
+    };
+    let kept = match key.kept_pass() {
+        Some(pass) => Some(picture.kept(pass.size(size)).await?),
+        None => None,
+    };
+    Ok(Frame {
+        width: size[0],
+        height: size[1],
+        triangle_id,
+        depth_key: depth_keys,
+        color,
+        resolved,
+        kept,
+        layer_sums: picture.layer_sums().await?,
+        glass: picture.glass().await?,
+        dots: picture.dot_strengths().await?,
+        counters,
+        depth_rounding: key.depth_rounding(),
+        depth_keys_are_approximate: key.options.visibility == Visibility::Race,
+    })
 }

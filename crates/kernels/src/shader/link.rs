@@ -34,7 +34,7 @@ use super::{
 };
 use crate::{
     accuracy::Visibility,
-    effects::{Effect, text::without_attributes},
+    effects::{Effect, text::for_kernels},
 };
 
 /// A linked module with the way back to its files.
@@ -151,7 +151,7 @@ type File = HashMap<String, Arc<Section>>;
 fn file_of(name: &str, text: &str) -> Arc<File> {
     // What effects say of their parameters is no WGSL.
     let text = match name.starts_with("effects/") {
-        true => &without_attributes(text),
+        true => &for_kernels(text),
         false => text,
     };
     let section = |(name, range): (&str, Range<usize>)| {

@@ -9,10 +9,7 @@ use base64::{Engine as _, engine::general_purpose::STANDARD};
 
 use super::{
     given::GivenMember,
-    hooks::{
-        Hooks, ImageAt, LitEffect, PassEffect, SampleEffect, SampleHook, Slot, SurfaceEffect,
-        SurfaceInput, VertexEffect, VertexHook,
-    },
+    hooks::{Hooks, LitEffect, SampleEffect, SampleHook, Slot, SurfaceEffect, SurfaceInput},
     image_file::ImageInput,
     text::built_in,
 };
@@ -85,30 +82,6 @@ impl Effect {
         self
     }
 
-    /// The same effect, which shows what surrounds the scene.
-    pub fn in_surroundings(mut self) -> Self {
-        self.hooks.shows_surroundings = true;
-        self
-    }
-
-    /// The same effect, also on the vertex hook.
-    pub fn on_vertex<P: VertexEffect>(mut self) -> Self {
-        self.hooks.vertex = Some(VertexHook {
-            needs_triangle: P::NEEDS_TRIANGLE,
-            moved: Arc::new(|vertices, words| {
-                let params = read(words);
-                vertices.iter_mut().for_each(|v| *v = P::moved(*v, &params));
-            }),
-            error_bound: Arc::new(|vertex, error_bound, words| {
-                P::error_bound(vertex, error_bound, &read(words))
-            }),
-            max_displacement_m: Arc::new(|radius_m, words| {
-                P::max_displacement_m(radius_m, &read(words))
-            }),
-        });
-        self
-    }
-
     /// The same effect, also on the sample hook.
     pub fn on_sample<P: SampleEffect>(mut self) -> Self {
         self.hooks.sample = Some(SampleHook {
@@ -125,20 +98,6 @@ impl Effect {
                 }
             }),
         });
-        self
-    }
-
-    /// The same effect, also in passes over the finished picture.
-    pub fn on_passes<P: PassEffect>(mut self) -> Self {
-        if let Some(hook) = &mut self.hooks.passes {
-            hook.run = Arc::new(|index, pixels: &[ImageAt<'_>], words: &[u32]| {
-                let params = read(words);
-                pixels
-                    .iter()
-                    .map(|at| P::pass(index, at, &params))
-                    .collect()
-            });
-        }
         self
     }
 

@@ -27,10 +27,13 @@ pub enum Given {
     Eye,
     /// Where it looks: unit length, world space.
     Forward,
+    /// Where the pointer is over the picture: pixels to the right and down, and 1; elsewhere the
+    /// middle of the picture, and 0.
+    Pointer,
 }
 
 impl Given {
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::Seconds,
         Self::Loop,
         Self::Frame,
@@ -38,6 +41,7 @@ impl Given {
         Self::Height,
         Self::Eye,
         Self::Forward,
+        Self::Pointer,
     ];
 
     /// The word in `@given(word)`.
@@ -50,6 +54,7 @@ impl Given {
             Self::Height => "height",
             Self::Eye => "eye",
             Self::Forward => "forward",
+            Self::Pointer => "pointer",
         }
     }
 
@@ -58,7 +63,7 @@ impl Given {
         match self {
             Self::Seconds | Self::Loop => WgslType::F32,
             Self::Frame | Self::Width | Self::Height => WgslType::U32,
-            Self::Eye | Self::Forward => WgslType::Vec4F32,
+            Self::Eye | Self::Forward | Self::Pointer => WgslType::Vec4F32,
         }
     }
 
@@ -90,13 +95,15 @@ impl Moment {
     }
 }
 
-/// The words of a picture of this size, seen from `eye` towards `forward`; none of the clock.
+/// The words of a picture of this size, seen from `eye` towards `forward`, without a pointer; none
+/// of the clock.
 pub fn words_of_view(
     given: Given,
     [width, height]: [u32; 2],
     eye: glam::DVec3,
     forward: glam::DVec3,
 ) -> Option<Vec<u32>> {
+    let middle = || [width, height].map(|side| side as f32 / 2.0);
     let of_vector = |v: glam::DVec3| {
         v.as_vec3()
             .extend(0.0)
@@ -109,6 +116,13 @@ pub fn words_of_view(
         Given::Height => vec![height],
         Given::Eye => of_vector(eye),
         Given::Forward => of_vector(forward),
+        Given::Pointer => words_of_pointer(middle(), false),
         _ => return None,
     })
+}
+
+/// The words of a pointer at a place in pixels.
+pub fn words_of_pointer([x, y]: [f32; 2], is_there: bool) -> Vec<u32> {
+    let is_there = f32::from(u8::from(is_there));
+    [x, y, is_there, 0.0].map(f32::to_bits).to_vec()
 }

@@ -6,26 +6,7 @@
 macro_rules! for_each_in_rust {
     ($callback:ident) => {
         $callback![
-            points,
-            draw_order,
-            particles,
-            explode,
-            inflate,
-            wobble,
-            psx,
-            dissolve,
-            studio,
-            shadow,
-            wireframe,
-            glass,
-            xray,
-            overdraw,
-            dots,
-            sky,
-            ambient,
-            paint,
-            depth_of_field,
-            blur,
+            points, draw_order, particles, dissolve, studio, shadow, glass, xray, overdraw, dots,
         ];
     };
 }

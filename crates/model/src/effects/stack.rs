@@ -149,6 +149,11 @@ impl Stack {
                     .collect();
                 field.set(words, &components).expect("within its range");
             }
+            for member in effect.given.iter().filter(|m| m.given == Given::Pointer) {
+                for word in &mut words[member.offset / 4..][..2] {
+                    *word = (f32::from_bits(*word) * factor as f32).to_bits();
+                }
+            }
         }
         stack
     }
@@ -171,6 +176,12 @@ impl Stack {
     pub fn is_canonical(&self) -> bool {
         self.0
             .is_sorted_by(|a, b| a.effect.rank() < b.effect.rank())
+    }
+
+    /// Is an effect given this?
+    pub fn is_given(&self, given: Given) -> bool {
+        let mut members = self.0.iter().flat_map(|enabled| &enabled.effect.given);
+        members.any(|member| member.given == given)
     }
 
     /// The scopes of the effects that have one, in order.

@@ -262,7 +262,26 @@ impl ErrorReport {
     /// Passes if everything that must be exact is, and the rest is within `budget`.
     /// Errors: a phrase for each limit that is exceeded, separated by semicolons.
     pub fn within(&self, budget: &Budget) -> Result<(), String> {
-        let most = [
+        let sentence = |&(count, limit, what): &(u64, u64, &str)| {
+            (count > limit).then(|| {
+                if limit == 0 {
+                    format!("{count} {what}")
+                } else {
+                    format!("{count} {what} (at most {limit})")
+                }
+            })
+        };
+        let sentences: Vec<String> = self.limits(budget).iter().filter_map(sentence).collect();
+        if sentences.is_empty() {
+            Ok(())
+        } else {
+            Err(sentences.join("; "))
+        }
+    }
+
+    /// What is counted, how much of it `budget` allows, and what a sentence calls it.
+    fn limits(&self, budget: &Budget) -> [(u64, u64, &'static str); 22] {
+        [
             (
                 self.wrong_triangles,
                 budget.max_wrong_triangles,
@@ -362,21 +381,6 @@ impl ErrorReport {
                     + (self.pixels as f64 * budget.max_rounding_fraction) as u64,
                 "pixels have a color that is one step of 255 away",
             ),
-        ];
-        let sentence = |&(count, limit, what): &(u64, u64, &str)| {
-            (count > limit).then(|| {
-                if limit == 0 {
-                    format!("{count} {what}")
-                } else {
-                    format!("{count} {what} (at most {limit})")
-                }
-            })
-        };
-        let sentences: Vec<String> = most.iter().filter_map(sentence).collect();
-        if sentences.is_empty() {
-            Ok(())
-        } else {
-            Err(sentences.join("; "))
-        }
+        ]
     }
 }

@@ -62,6 +62,25 @@ impl Fit {
         })
     }
 
+    /// The same place, counted from another point.
+    #[must_use]
+    pub fn counted_from(self, origin: DVec3) -> Self {
+        Self {
+            to: self.to - origin,
+            ..self
+        }
+    }
+
+    /// From the world of a scene to the same, counted from another point.
+    pub(super) fn to_origin(origin: DVec3) -> Self {
+        Self {
+            from: origin,
+            to: DVec3::ZERO,
+            scale: 1.0,
+            depths: None,
+        }
+    }
+
     /// The way back.
     #[must_use]
     pub fn inverse(&self) -> Self {

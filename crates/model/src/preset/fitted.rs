@@ -2,6 +2,8 @@
 
 use std::{borrow::Cow, sync::Arc};
 
+use glam::DVec3;
+
 use super::{
     Preset,
     animation::{Animation, Keyframe, Track},
@@ -78,7 +80,7 @@ impl Preset {
     }
 
     /// The preset with its lengths in meters, for `scene`.
-    pub fn in_meters(&self, scene: &Scene) -> Cow<'_, Self> {
+    pub fn metric(&self, scene: &Scene) -> Cow<'_, Self> {
         if self.unit == LengthUnit::Meter {
             return Cow::Borrowed(self);
         }
@@ -90,12 +92,41 @@ impl Preset {
         })
     }
 
-    /// From the unit of the preset to meters in `scene`; none where that changes nothing.
+    /// The preset as a picture of `scene` has it: with its lengths in meters, and with points that
+    /// count from [`Scene::origin`].
+    pub fn in_meters(&self, scene: &Scene) -> Cow<'_, Self> {
+        match self.metric(scene) {
+            Cow::Borrowed(metric) if metric.origin == scene.origin => Cow::Borrowed(metric),
+            metric => Cow::Owned(metric.into_owned().counted_from(scene.origin)),
+        }
+    }
+
+    /// The same preset, in meters, whose points count from another point of the scene.
+    #[must_use]
+    pub fn counted_from(self, origin: DVec3) -> Self {
+        let apart = origin - self.origin;
+        if apart == DVec3::ZERO {
+            return self;
+        }
+        Self {
+            origin,
+            camera: self.camera.map(|camera| camera.counted_from(apart)),
+            // It lies in the scene.
+            polyline: self.polyline.clone(),
+            ..self.fitted(&Fit::to_origin(apart)).0
+        }
+    }
+
+    /// From the unit of the preset to meters in a picture of `scene`; none where that changes
+    /// nothing.
     pub fn unit_fit(&self, scene: &Scene) -> Option<Fit> {
-        if self.unit == LengthUnit::Meter {
-            None
-        } else {
-            Fit::of_scene_unit(&scene.content_bounds())
+        let apart = scene.origin - self.origin;
+        match self.unit {
+            LengthUnit::Meter => (apart != DVec3::ZERO).then(|| Fit::to_origin(apart)),
+            LengthUnit::Scene => {
+                let fit = Fit::of_scene_unit(&scene.content_bounds());
+                fit.map(|fit| fit.counted_from(apart))
+            }
         }
     }
 }

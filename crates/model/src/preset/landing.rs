@@ -20,6 +20,7 @@ impl Preset {
             parts,
             spin_deg_per_s,
             playback,
+            origin,
             camera,
             scene_camera,
             bookmarks,
@@ -56,6 +57,7 @@ impl Preset {
             playback,
             unit,
             polyline,
+            origin,
             camera,
             scene_camera,
             bookmarks,
@@ -73,8 +75,12 @@ impl Preset {
     pub fn left_out_on(&self, own: &Self) -> Vec<String> {
         let (clip, own_clip) = (&self.playback.clip, &own.playback.clip);
         let is_left = !clip.is_empty() && own_clip.is_empty();
+        let or = match cfg!(target_arch = "wasm32") {
+            true => "",
+            false => ", or with --set scene.clip=NAME",
+        };
         let clip = format!(
-            "scene.clip {clip:?} was left out; choose one that this model has, if any, under Clips, or with --set scene.clip=NAME"
+            "scene.clip {clip:?} was left out; choose one that this model has, if any, under Clips{or}"
         );
         is_left.then_some(clip).into_iter().collect()
     }

@@ -13,12 +13,12 @@ mod landing;
 mod missing_parts;
 mod output;
 mod particle_timeline;
+mod playback;
 pub mod polyline;
 pub mod rebind;
 mod rules;
 mod setting;
 pub mod settings;
-mod studio;
 mod toward;
 
 use std::{path::PathBuf, sync::Arc};
@@ -32,12 +32,12 @@ use crate::{
     },
     math::{rotation_y, turned_about},
     scene::{
-        Bounds, Ground, Scene,
-        camera::Camera,
+        Bounds, Ground, Scene, SceneCamera,
+        camera::{Camera, Frame},
         needs,
         parts::ShownParts,
         pose::{Motion, Pose, scene_from_nodes},
-        punctual::{PlacedLight, SceneLight},
+        punctual::{PlacedLight, SceneLight, dimmed},
         shadow_resolution::ShadowResolution,
         view::{SceneState, View},
     },
@@ -47,8 +47,13 @@ pub use bookmark::{Bookmark, MAX_BOOKMARK_CHARS, MAX_BOOKMARKS, check_bookmark_n
 pub use fit::{Fit, LengthUnit};
 pub use golden_budget::GoldenTest;
 pub use output::{NAMED_SIZES, Output, named_size};
+use playback::list_names;
+pub use playback::{ClipPlayback, Clock, MissingInScene};
 
 pub use crate::accuracy::{AccuracyRequest, PinnedOptions, Tier, Visibility};
+
+/// The name of no camera of the scene: the whole scene is framed.
+pub const NO_CAMERA: &str = "#none";
 
 /// How far beyond the scene's box particles widen what the automatic camera frames, in radii of it.
 const PARTICLES_ASIDE: f64 = 0.35;
@@ -60,127 +65,6 @@ pub enum SceneSource {
     Builtin(String),
     /// A model file; relative paths are relative to the folder of the preset.
     File(PathBuf),
-}
-
-/// Which animation clips of a scene play, and how.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ClipPlayback {
-    /// Name of the clip; empty: none.
-    pub clip: String,
-    /// Seconds of the clips that pass in one second of the clock.
-    pub speed: f64,
-    /// Freezes the clips at this time.
-    pub clip_time_s: Option<f64>,
-    /// Name of a second clip to blend with; empty: none.
-    pub second_clip: String,
-    /// Weight of the second clip, 0 to 1.
-    pub blend: f64,
-}
-
-impl Default for ClipPlayback {
-    fn default() -> Self {
-        Self {
-            clip: String::new(),
-            speed: 1.0,
-            clip_time_s: None,
-            second_clip: String::new(),
-            blend: 0.0,
-        }
-    }
-}
-
-/// A variant, clip or camera that a scene does not have.
-#[derive(Debug, PartialEq, thiserror::Error)]
-#[error("{key}: the scene has no {what} {name:?}{known}")]
-pub struct MissingInScene {
-    pub key: &'static str,
-    pub what: &'static str,
-    pub name: String,
-    /// `; it has "Walk", "Run"`.
-    pub known: String,
-}
-
-/// `; it has "Walk", "Run"`, or `; <none>` where there are no names.
-fn list_names<'a>(names: impl Iterator<Item = &'a String>, none: &str) -> String {
-    let names: Vec<String> = names.take(12).map(|name| format!("{name:?}")).collect();
-    if names.is_empty() {
-        format!("; {none}")
-    } else {
-        format!("; it has {}", names.join(", "))
-    }
-}
-
-impl ClipPlayback {
-    /// Does a clip play with the clock?
-    pub fn is_moving(&self) -> bool {
-        !self.clip.is_empty() && self.clip_time_s.is_none() && self.speed != 0.0
-    }
-
-    /// Does the scene have the clips?
-    /// Errors: the first clip that is missing.
-    pub fn check(&self, scene: &Scene) -> Result<(), MissingInScene> {
-        for (key, name) in [
-            ("scene.clip", &self.clip),
-            ("scene.second_clip", &self.second_clip),
-        ] {
-            if !name.is_empty() && scene.rig.clip(name).is_none() {
-                let known = list_names(
-                    scene.rig.clips.iter().map(|clip| &clip.name),
-                    "it has no clips",
-                );
-                return Err(MissingInScene {
-                    key,
-                    what: "clip",
-                    name: name.clone(),
-                    known,
-                });
-            }
-        }
-        Ok(())
-    }
-}
-
-/// The time of a preset.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Clock {
-    /// Time of the picture.
-    pub time_s: f64,
-    /// Begin and end of the timeline and of a sequence; the end comes later than the begin and is
-    /// not drawn.
-    pub range_s: [f64; 2],
-    /// Starts again at the begin of the range after its end.
-    pub is_looping: bool,
-    /// Seconds of the clock that pass in one second of playback, above 0.
-    pub speed: f64,
-}
-
-impl Default for Clock {
-    fn default() -> Self {
-        Self {
-            time_s: 0.0,
-            range_s: [0.0, 4.0],
-            is_looping: true,
-            speed: 1.0,
-        }
-    }
-}
-
-impl Clock {
-    /// The time of the clock `passed_s` seconds of playback after `time_s`, and whether it
-    /// continues from there. A time before the range runs into it.
-    pub fn after(&self, time_s: f64, passed_s: f64) -> (f64, bool) {
-        let [from_s, to_s] = self.range_s;
-        let next_s = time_s + passed_s * self.speed;
-        if next_s < to_s {
-            return (next_s, true);
-        }
-        if !self.is_looping {
-            return (to_s, false);
-        }
-        // The remainder of a tiny negative number may round up to the length of the range.
-        let wrapped_s = from_s + (next_s - from_s).rem_euclid(to_s - from_s);
-        (if wrapped_s < to_s { wrapped_s } else { from_s }, true)
-    }
 }
 
 /// The state of a preset.
@@ -208,9 +92,12 @@ pub struct Preset {
     pub unit: LengthUnit,
     /// A polyline for effects that draw along lines; it turns with the scene.
     pub polyline: Arc<[[f32; 3]]>,
+    /// The point of the scene from which its points count, meters: the file's origin, but as a picture
+    /// has it [`Scene::origin`].
+    pub origin: DVec3,
     /// None: a camera of the scene, or one that frames the whole scene.
     pub camera: Option<Camera>,
-    /// Name of the scene's camera to use without a `camera`; empty: the first.
+    /// Name of the scene's camera to use without a `camera`; empty: the first; [`NO_CAMERA`]: none.
     pub scene_camera: String,
     /// Cameras under names; the picture shows none of them until `camera` is one.
     pub bookmarks: Vec<Bookmark>,
@@ -239,6 +126,7 @@ impl Default for Preset {
             playback: ClipPlayback::default(),
             unit: LengthUnit::default(),
             polyline: Arc::default(),
+            origin: DVec3::ZERO,
             camera: None,
             scene_camera: String::new(),
             bookmarks: Vec::new(),
@@ -366,7 +254,7 @@ impl Preset {
             let reach = particle_settings.disc_bounds();
             [reach.min, reach.max]
                 .into_iter()
-                .for_each(|corner| bounds.include(corner));
+                .for_each(|corner| bounds.include(corner + self.origin));
         }
         bounds
     }
@@ -403,7 +291,8 @@ impl Preset {
                 known: list_names(scene.variants.iter(), "it has no variants"),
             });
         }
-        if !self.scene_camera.is_empty() && scene.camera(&self.scene_camera).is_none() {
+        let is_named = !["", NO_CAMERA].contains(&&*self.scene_camera);
+        if is_named && scene.camera(&self.scene_camera).is_none() {
             let known = list_names(
                 scene.cameras.iter().map(|camera| &camera.name),
                 "it has no cameras",
@@ -418,18 +307,80 @@ impl Preset {
         self.playback.check(scene)
     }
 
+    /// What `studio.lights` must be for the lights of `scene`, which are far too strong for its
+    /// picture; none where they are not, or where keyframes lead them.
+    pub fn dimmed_lights(&self, scene: &Scene) -> Option<f64> {
+        let lights = self.stack.get("studio")?.number("lights");
+        let times = scene.glare()?;
+        let is_led = self.animation.get("studio", "lights").is_some();
+        (!is_led && lights > 2.0 * dimmed(times)).then(|| dimmed(times))
+    }
+
+    /// Dims lights of `scene` that are far too strong.
+    pub fn dim_lights(&mut self, scene: &Scene) {
+        if let Some(dimmed) = self.dimmed_lights(scene)
+            && let Some(studio) = self.stack.get_mut("studio")
+        {
+            studio.set("lights", &[dimmed]);
+        }
+    }
+
     /// The camera of the preset, else that of the scene at its node, else one that frames `scene`.
     pub fn camera_for(&self, scene: &Scene, aspect: f64) -> Camera {
         let own = || {
-            let camera = scene
-                .cameras
-                .get(scene.camera(&self.scene_camera).unwrap_or(0))?;
+            let camera = self.camera_of(scene)?;
             Some(camera.node.map_or(camera.pose, |node| {
                 camera.carried(&scene_from_nodes(&scene.rig, &self.motion(scene))[node])
             }))
         };
-        let framing = || Camera::around(&self.framing_points(scene), FRAMING_DIRECTION, aspect);
-        self.camera.or_else(own).unwrap_or_else(framing)
+        let framing = || {
+            Camera::around(
+                &self.framing_points(scene),
+                FRAMING_DIRECTION,
+                self.frame(aspect),
+            )
+        };
+        self.camera
+            .unwrap_or_else(|| own().unwrap_or_else(framing).counted_from(self.origin))
+    }
+
+    /// The camera that comes with `scene` and is used where the preset has none of its own.
+    pub fn camera_of<'a>(&self, scene: &'a Scene) -> Option<&'a SceneCamera> {
+        let index = scene.camera(&self.scene_camera).unwrap_or(0);
+        scene
+            .cameras
+            .get(index)
+            .filter(|_| self.scene_camera != NO_CAMERA)
+    }
+
+    /// What the automatic camera fills of the picture: of a model as much as there is, of a built-in
+    /// scene a square.
+    pub fn frame(&self, aspect: f64) -> Frame {
+        match self.scene {
+            SceneSource::File(_) => Frame::whole(aspect),
+            SceneSource::Builtin(_) => Frame::square(aspect),
+        }
+    }
+
+    /// The camera of the model's file that is used, if it leaves out some of the model.
+    pub fn cropping_camera<'a>(&self, scene: &'a Scene) -> Option<&'a SceneCamera> {
+        // Of half the picture's side.
+        const BEYOND: f64 = 1.02;
+        let camera = self.camera_of(scene)?;
+        if self.camera.is_some() || !matches!(self.scene, SceneSource::File(_)) {
+            return None;
+        }
+        let view = self.view(scene, self.output.size);
+        let clip_from_scene = view.clip_from_world * view.scene_state.world_from_scene;
+        let is_outside = |point: &DVec3| {
+            let clip = clip_from_scene * point.extend(1.0);
+            clip.w <= 0.0 || clip.x.abs().max(clip.y.abs()) > BEYOND * clip.w
+        };
+        scene
+            .framing_points(self.motion(scene).clip)
+            .iter()
+            .any(is_outside)
+            .then_some(camera)
     }
 
     /// The box of `scene` that a look is fitted to, see [`Scene::subject_bounds`].
@@ -446,13 +397,14 @@ impl Preset {
         if other.is_some() {
             points.extend(scene.framing_points(other).iter());
         }
-        if let Some(particle_settings) = self.in_meters(scene).evaluated_stack().particle_settings()
-        {
+        let preset = self.in_meters(scene);
+        if let Some(particle_settings) = preset.evaluated_stack().particle_settings() {
             // Particles may fly far, but the scene is what is looked at.
             let mut near = Bounds::EMPTY;
             points.iter().for_each(|point| near.include(*point));
             let aside = PARTICLES_ASIDE * near.radius();
             let corners = particle_settings.disc_bounds().corners();
+            let corners = corners.map(|corner| corner + preset.origin);
             points.extend(corners.map(|corner| {
                 if near.is_empty() {
                     corner
@@ -514,6 +466,10 @@ impl Preset {
         } else {
             turned_about(scene.axis(), turns.fract() * std::f64::consts::TAU)
         };
+        let spin = match preset.origin {
+            DVec3::ZERO => spin,
+            origin => DMat4::from_translation(-origin) * spin,
+        };
         let pose = preset.pose(scene);
         let mut bounds = preset.with_particles(
             pose.as_ref()
@@ -551,6 +507,7 @@ impl Preset {
         );
         let scene_state = SceneState {
             world_from_scene: spin,
+            origin: preset.origin,
             pose,
             lights: preset.lights(scene, &spin),
             polyline: preset.polyline.clone(),

@@ -18,7 +18,7 @@ use crate::{
     accuracy::{AXES, Tier},
     params::{Stored, Value, ValueError, ValueType},
     scene::{
-        GroundShape,
+        GroundShape, UpAxis,
         camera::{Camera, MIN_NEAR_M, Projection},
         ground::MAX_CELLS,
         parts::{MAX_PATTERNS, Scope},
@@ -215,6 +215,12 @@ pub static SCENE: Section = Section {
                     field!(parts.variant),
                 ),
                 Setting::new(
+                    "up",
+                    ValueType::choice(UpAxis::WORDS),
+                    "The axis of the scene's file that is up; auto: y of a glTF model, and of others guessed from names and from how they stand",
+                    UP,
+                ),
+                Setting::new(
                     "room",
                     ValueType::F64,
                     "Walls around the scene, seen from inside: their distance as a multiple of the scene's width; 0: none",
@@ -271,7 +277,7 @@ pub static SCENE: Section = Section {
                 Setting::new(
                     "camera",
                     LINE,
-                    "The camera of the scene to use where there is no [camera], by its name or as #0, #1 …; empty: the first",
+                    "The camera of the scene to use where there is no [camera], by its name or as #0, #1 …; empty: the first; #none: the whole scene is framed",
                     field!(scene_camera),
                 ),
             ],
@@ -636,6 +642,17 @@ const POLYLINE: Storage = Storage::State {
     set: |preset, value| {
         let points = polyline::parse(&String::from_value(value)?).map_err(ValueError::Rule)?;
         preset.polyline = points.into();
+        Ok(())
+    },
+    clear: None,
+};
+
+const UP: Storage = Storage::State {
+    get: |preset| Some(Value::Choice(preset.parts.up as usize)),
+    set: |preset, value| {
+        if let Value::Choice(index) = value {
+            preset.parts.up = UpAxis::ALL[*index];
+        }
         Ok(())
     },
     clear: None,

@@ -152,7 +152,7 @@ impl Preset {
             (!is_even).then(|| mixed_color(bottom(a), bottom(b), by));
         mixture.accuracy = a.accuracy;
         mixture.test = None;
-        mixture
+        mixture.counted_from(self.origin)
     }
 }
 
@@ -163,9 +163,9 @@ impl Preset {
     /// have another unit. Returns how many parameters move; where none does, nothing changes.
     pub fn key_from(&mut self, other: &Self, scene: &Scene) -> usize {
         let (mut keyed, mut other) = (self.clone(), Cow::Borrowed(other));
-        if self.unit != other.unit {
-            keyed = self.in_meters(scene).into_owned();
-            other = Cow::Owned(other.in_meters(scene).into_owned());
+        if (self.unit, self.origin) != (other.unit, other.origin) {
+            keyed = self.metric(scene).into_owned();
+            other = Cow::Owned(other.metric(scene).into_owned().counted_from(self.origin));
         }
         let [from_s, to_s] = keyed.clock.range_s;
         let start = other.animation.evaluate(&other.stack, from_s);
@@ -203,11 +203,7 @@ impl Preset {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{
-        effects::{Effect, explode},
-        preset::LengthUnit,
-        scene::builtin,
-    };
+    use crate::{effects::Effect, preset::LengthUnit, scene::builtin};
 
     fn camera(eye: [f64; 3], fov_y_deg: f64) -> Camera {
         Camera {
@@ -305,9 +301,11 @@ mod tests {
             unit,
             ..Preset::default()
         });
-        let amount = explode::EFFECT.field("amount_m").expect("a parameter");
+        let amount = Effect::named("explode")
+            .field("amount_m")
+            .expect("a parameter");
         for (preset, value) in [(&mut a, 0.5), (&mut b, 4.0)] {
-            let enabled = preset.stack.enable(&explode::EFFECT);
+            let enabled = preset.stack.enable(Effect::named("explode"));
             amount.set(&mut enabled.words, &[value]).expect("in range");
         }
         let of = |preset: &Preset| {

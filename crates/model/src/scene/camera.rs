@@ -11,6 +11,41 @@ pub const MIN_NEAR_M: f64 = 1.0 / (1 << 20) as f64;
 /// How much of the picture's smaller side a framed scene fills.
 pub const FRAMED: f64 = 0.8;
 
+/// How much of the picture a framed model fills, at least of its width or of its height.
+pub const FILLED: f64 = 0.88;
+
+/// The room in a picture that a framed model fills.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Frame {
+    /// How much of this is filled.
+    part: f64,
+    /// Width and height over the picture's height.
+    sides: [f64; 2],
+}
+
+impl Frame {
+    /// The square of which [`FRAMED`] tells. `aspect` is the picture's width over its height.
+    pub fn square(aspect: f64) -> Self {
+        Self {
+            part: FRAMED,
+            sides: [aspect.clamp(1e-3, 1.0); 2],
+        }
+    }
+
+    /// The part of the whole picture of which [`FILLED`] tells.
+    pub fn whole(aspect: f64) -> Self {
+        Self {
+            part: FILLED,
+            sides: [aspect.clamp(1e-3, 1e3), 1.0],
+        }
+    }
+
+    /// Width and height that are filled, of a picture of this height.
+    pub fn filled(self, height: f64) -> [f64; 2] {
+        self.sides.map(|side| height * self.part * side)
+    }
+}
+
 /// How depth becomes picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Projection {
@@ -72,11 +107,11 @@ impl Camera {
         }
     }
 
-    /// The camera that looks along `direction` and in whose picture `points` fill [`FRAMED`] of the
-    /// smaller side, in the middle. `aspect` is the picture's width over its height.
-    pub fn around(points: &[DVec3], direction: DVec3, aspect: f64) -> Self {
+    /// The camera that looks along `direction` and in whose picture `points` fill the frame across or
+    /// down, in the middle.
+    pub fn around(points: &[DVec3], direction: DVec3, frame: Frame) -> Self {
         let fov_y_deg: f64 = 45.0;
-        let side = libm::tan(fov_y_deg.to_radians() * 0.5) * FRAMED * aspect.clamp(1e-3, 1.0);
+        let [across, down] = frame.filled(libm::tan(fov_y_deg.to_radians() * 0.5));
         let direction = direction.try_normalize().unwrap_or(DVec3::NEG_Z);
         let turned = view_from_world(DVec3::ZERO, direction, DVec3::Y);
         // Where the planes through the eye along the frame's sides must lie at least: x and y to
@@ -85,17 +120,19 @@ impl Camera {
             ([f64::NEG_INFINITY; 4], f64::NEG_INFINITY, f64::INFINITY);
         for point in points {
             let p = turned.transform_point3(*point);
-            for (plane, aside) in planes.iter_mut().zip([p.x, -p.x, p.y, -p.y]) {
+            let asides = [(p.x, across), (-p.x, across), (p.y, down), (-p.y, down)];
+            for (plane, (aside, side)) in planes.iter_mut().zip(asides) {
                 *plane = plane.max(aside + side * p.z);
             }
             (near, far) = (near.max(p.z), far.min(p.z));
         }
         if points.is_empty() {
-            return Self::framing(&Bounds::EMPTY, direction, aspect);
+            return Self::framing(&Bounds::EMPTY, direction, 1.0);
         }
         let [right, left, top, bottom] = planes;
         let middle = (near + far) * 0.5;
-        let eye_z = ((right + left).max(top + bottom) / (2.0 * side)).max(near);
+        let apart = ((right + left) / (2.0 * across)).max((top + bottom) / (2.0 * down));
+        let eye_z = apart.max(near);
         let distance = if eye_z - middle > 1e-9 * (1.0 + middle.abs()) {
             eye_z - middle
         } else {
@@ -111,6 +148,16 @@ impl Camera {
             up: DVec3::Y,
             projection: Projection::Perspective { fov_y_deg },
             near_m: (distance * 1e-3).max(MIN_NEAR_M),
+        }
+    }
+
+    /// The same pose, counted from another point of the world.
+    #[must_use]
+    pub fn counted_from(self, origin: DVec3) -> Self {
+        Self {
+            eye: self.eye - origin,
+            target: self.target - origin,
+            ..self
         }
     }
 

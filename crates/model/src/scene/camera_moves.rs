@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::scene::camera::{Camera, FRAMED, MIN_NEAR_M, Projection};
+use crate::scene::camera::{Camera, Frame, MIN_NEAR_M, Projection};
 
 /// Range of the distance between eye and target, meters: keeps poses below the 2^40 that the
 /// kernels' arithmetic allows.
@@ -150,19 +150,19 @@ pub fn toggle_orthographic(camera: &mut Camera) {
 }
 
 /// The pose with the same direction and projection that frames `points`.
-pub fn framing(camera: &Camera, points: &[DVec3], aspect: f64) -> Camera {
-    let mut framed = Camera::around(points, camera.forward(), aspect);
+pub fn framing(camera: &Camera, points: &[DVec3], frame: Frame) -> Camera {
+    let mut framed = Camera::around(points, camera.forward(), frame);
     framed.up = camera.up;
     if matches!(camera.projection, Projection::Orthographic { .. }) {
-        let (right, up) = axes(&framed);
+        let ((right, up), [across, down]) = (axes(&framed), frame.filled(1.0));
         let reach = points
             .iter()
             .map(|point| *point - framed.target)
-            .map(|from| from.dot(right).abs().max(from.dot(up).abs()))
+            .map(|from| (from.dot(right).abs() / across).max(from.dot(up).abs() / down))
             .fold(0.0, f64::max);
         let reach = if reach > 0.0 { reach } else { 1.0 };
         framed.projection = Projection::Orthographic {
-            height_m: 2.0 * reach / (FRAMED * aspect.clamp(1e-3, 1.0)),
+            height_m: 2.0 * reach,
         };
     }
     framed

@@ -214,7 +214,6 @@ pub fn scoped_draws(scene: &Scene, view: &View, scopes: &[Scope]) -> Result<Vec<
         None
     };
     let pose = view.scene_state.pose.as_deref().or(at_rest.as_ref());
-    let turning = scene.instances.len() - scene.walls;
     // The view of a light leaves out ground and walls, which are last in the list.
     let drawn = if view.is_light() {
         scene.shadow_casters()
@@ -229,15 +228,7 @@ pub fn scoped_draws(scene: &Scene, view: &View, scopes: &[Scope]) -> Result<Vec<
     let make_draw = |(index, instance): (usize, &Instance)| {
         let primitive = &scene.primitives[instance.primitive];
         let deform = pose.and_then(|pose| pose.deform(index)).cloned();
-        let world_from_scene = if index < turning {
-            view.scene_state.world_from_scene
-        } else {
-            DMat4::IDENTITY
-        };
-        let world_from_object = world_from_scene
-            * pose.map_or(instance.world_from_object, |pose| {
-                pose.instance_transform(index)
-            });
+        let world_from_object = view.world_from_instance(scene, index, pose);
         let bounds = deform
             .as_ref()
             .map_or(primitive.bounds, |deform| deform.bounds(primitive));

@@ -200,7 +200,7 @@ mod tests {
     use super::*;
     use crate::scene::{
         builtin,
-        camera::{Camera, FRAMED},
+        camera::{Camera, FILLED, FRAMED, Frame},
         mesh_builder::MeshBuilder,
         model::Instance,
         view::View,
@@ -209,8 +209,17 @@ mod tests {
     const DIRECTION: DVec3 = DVec3::new(-0.45, -0.42, -1.0);
 
     /// Width and height of the picture's part that all corners of `scene` fill, pixels.
-    fn filled(scene: &Scene, points: &[DVec3], [width, height]: [u32; 2]) -> [f64; 2] {
-        let camera = Camera::around(points, DIRECTION, f64::from(width) / f64::from(height));
+    fn filled(
+        scene: &Scene,
+        points: &[DVec3],
+        [width, height]: [u32; 2],
+        frame: fn(f64) -> Frame,
+    ) -> [f64; 2] {
+        let camera = Camera::around(
+            points,
+            DIRECTION,
+            frame(f64::from(width) / f64::from(height)),
+        );
         let view = View::new(
             &camera,
             width,
@@ -244,11 +253,36 @@ mod tests {
         ] {
             let scene = builtin::build(query).expect("a scene");
             for size in [[320, 240], [240, 320], [1920, 1080]] {
-                let [across, down] = filled(&scene, &scene.framing_points(None), size);
+                let [across, down] =
+                    filled(&scene, &scene.framing_points(None), size, Frame::square);
                 let part = across.max(down) / f64::from(size[0].min(size[1]));
                 assert!(
                     (part / FRAMED - 1.0).abs() < 0.02,
                     "{query} {size:?}: {part}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn a_framed_model_fills_the_picture_however_flat_or_tall_it_is() {
+        for stretch in [
+            DVec3::ONE,
+            DVec3::new(6.0, 0.5, 6.0),
+            DVec3::new(0.3, 4.0, 0.3),
+        ] {
+            let mut scene = builtin::build("sphere?triangles=9000").expect("a scene");
+            for instance in &mut scene.instances {
+                instance.world_from_object = DMat4::from_scale(stretch);
+            }
+            scene.framing = FramingPoints::default();
+            for size in [[320, 240], [240, 320], [1920, 1080]] {
+                let [across, down] =
+                    filled(&scene, &scene.framing_points(None), size, Frame::whole);
+                let part = (across / f64::from(size[0])).max(down / f64::from(size[1]));
+                assert!(
+                    (part / FILLED - 1.0).abs() < 0.02,
+                    "{stretch} {size:?}: {part}"
                 );
             }
         }

@@ -64,6 +64,7 @@ pub fn light_view(toward: DVec3, scene: &Scene, view: &View, max_displacement_m:
     let texel_m = side_m / f64::from(side);
     // Whole texels from the scene, where it does not stand about the origin.
     let anchor = Scene::mesh_origin(&content, content.center(), content.radius());
+    let anchor = anchor - view.scene_state.origin;
     let origin = axes.plane(anchor);
     let middle = origin + (((low + high) * 0.5 - origin) / texel_m).round() * texel_m;
     let eye = axes.right * middle.x + axes.up * middle.y + toward * toward.dot(anchor);
@@ -86,6 +87,7 @@ pub fn light_view(toward: DVec3, scene: &Scene, view: &View, max_displacement_m:
     View {
         scene_state: SceneState {
             pose: view.scene_state.pose.clone(),
+            origin: view.scene_state.origin,
             ..light.scene_state.clone()
         },
         picture_from_world: Some(view.clip_from_world),

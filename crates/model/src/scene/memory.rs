@@ -43,7 +43,11 @@ impl MemoryBudget {
 
     /// What to do about a scene that is larger: a part of a sentence.
     pub fn remedy(self) -> String {
-        format!("within the memory budget of {self}; raise it with --memory")
+        let how = match cfg!(target_arch = "wasm32") {
+            true => "the program can be given more",
+            false => "raise it with --memory",
+        };
+        format!("within the memory budget of {self}; {how}")
     }
 }
 

@@ -41,6 +41,7 @@ pub mod shadow_resolution;
 pub mod sizes;
 pub mod tangents;
 pub mod texture;
+pub mod up;
 pub mod view;
 
 pub use accessor::{Accessor, ComponentType};
@@ -49,3 +50,4 @@ pub use bounds::Bounds;
 pub use ground::{Ground, GroundShape};
 pub use material::Material;
 pub use model::{Instance, Primitive, Scene, SceneCamera, Topology};
+pub use up::UpAxis;

@@ -15,6 +15,7 @@ use super::{
     punctual::SceneLight,
     rig::Rig,
     texture::Image,
+    up::UpAxis,
 };
 use crate::work::{Canceled, map_parts};
 
@@ -270,6 +271,8 @@ pub struct Scene {
     pub grounds: usize,
     /// The box of what the walls surround; none without walls.
     pub content: Option<Bounds>,
+    /// The axis of its file that is up.
+    pub up: UpAxis,
     /// Cameras that come with the scene.
     pub cameras: Vec<SceneCamera>,
     /// The picture of what surrounds it.
@@ -286,6 +289,9 @@ pub struct Scene {
     pub notes: Vec<String>,
     /// Those of the messages that say how the file breaks its standard.
     pub faults: Vec<String>,
+    /// The point from which the world of its pictures counts: of a model that does not stand about its
+    /// file's origin its middle, so that patterns in the world are the same wherever it lies.
+    pub origin: DVec3,
     /// The points that a camera frames.
     pub framing: FramingPoints,
 }
@@ -434,6 +440,16 @@ impl Scene {
         let is_inside = min.x.max(min.z) < 0.0 && max.x.min(max.z) > 0.0;
         let is_near = is_inside && center.y.abs() <= 8.0 * reach;
         if is_near { DVec3::ZERO } else { center }
+    }
+
+    /// The scene with the [origin](Scene::origin) of a model.
+    #[must_use]
+    pub fn counted(mut self) -> Self {
+        let content = self.content_bounds();
+        if !content.is_empty() && content.center().is_finite() {
+            self.origin = Self::mesh_origin(&content, content.center(), content.radius());
+        }
+        self
     }
 
     /// World-space box of `instances` in their rest pose.

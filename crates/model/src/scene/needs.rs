@@ -283,19 +283,11 @@ fn box_px(primitive: &Primitive, draw: &Draw, view: &View) -> f64 {
 /// answer follows from scene and view alone, so that the oracle and every adapter give the same.
 pub fn is_far(scene: &Scene, view: &View) -> bool {
     let pose = view.scene_state.pose.as_deref();
-    let turning = scene.instances.len() - scene.walls;
     let placed = sampled(&scene.instances).map(|(index, instance)| {
         let primitive = &scene.primitives[instance.primitive];
-        let world_from_scene = match index < turning {
-            true => view.scene_state.world_from_scene,
-            false => DMat4::IDENTITY,
-        };
-        let own = pose.map_or(instance.world_from_object, |pose| {
-            pose.instance_transform(index)
-        });
         let deform = pose.and_then(|pose| pose.deform(index));
         let bounds = deform.map_or(primitive.bounds, |deform| deform.bounds(primitive));
-        (world_from_scene * own, bounds)
+        (view.world_from_instance(scene, index, pose), bounds)
     });
     outgrows(rounding_px(view, placed))
 }

@@ -6,7 +6,10 @@
 
 use std::{collections::BTreeMap, fmt, str::FromStr, sync::Arc};
 
-use super::model::{Instance, NamedNode, Primitive, Scene};
+use super::{
+    model::{Instance, NamedNode, Primitive, Scene},
+    up::UpAxis,
+};
 
 /// Longest name of a part and longest pattern, in characters.
 pub const MAX_NAME_CHARS: usize = 120;
@@ -224,9 +227,11 @@ impl fmt::Display for Scope {
     }
 }
 
-/// Which parts of a scene are shown, by default all, and in which of their materials.
+/// Which parts of a scene are shown, by default all, in which of their materials, and which way up.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct ShownParts {
+    /// The axis of the file that is up.
+    pub up: UpAxis,
     /// Name of the variant of materials with which the scene is loaded; empty: those of the file.
     pub variant: String,
     /// Nothing else is shown.
@@ -239,7 +244,7 @@ impl Scene {
     /// The scene with the instances of these parts alone.
     #[must_use]
     pub fn showing(mut self, parts: &ShownParts) -> Self {
-        if *parts == ShownParts::default() {
+        if parts.only.is_whole_scene() && parts.hidden.is_whole_scene() {
             return self;
         }
         let masks = scope_masks(&self, &[parts.only.clone(), parts.hidden.clone()]);

@@ -318,9 +318,10 @@ impl State {
     fn node_transforms(&self, rig: &Rig) -> Vec<DMat4> {
         let mut scene_from_node: Vec<DMat4> = Vec::with_capacity(rig.nodes.len());
         for (node, local) in rig.nodes.iter().zip(&self.locals) {
-            let parent = node
-                .parent
-                .map_or(DMat4::IDENTITY, |parent| scene_from_node[parent]);
+            let parent = node.parent.map_or_else(
+                || rig.turn.unwrap_or_default(),
+                |parent| scene_from_node[parent],
+            );
             scene_from_node.push(parent * local.matrix());
         }
         scene_from_node

@@ -8,6 +8,8 @@ use std::f64::consts::{FRAC_1_PI, FRAC_PI_4};
 
 use glam::{DMat4, DVec3};
 
+use super::model::Scene;
+
 /// Most lights of a scene that shine.
 pub const MAX_LIGHTS: usize = 16;
 
@@ -104,6 +106,33 @@ impl SceneLight {
             },
         }
     }
+}
+
+impl Scene {
+    /// How strong the strongest of its lights is on a white matt surface about its middle, where that
+    /// is far beyond 1: files in photometric units are meant for a camera's exposure.
+    pub fn glare(&self) -> Option<f64> {
+        const MOST: f64 = 4.0;
+        let bounds = self.content_bounds();
+        let strength = |light: &SceneLight| {
+            let place = light.world_from_light.w_axis.truncate();
+            let distance = match light.kind {
+                LightKind::Directional => 1.0,
+                LightKind::Point | LightKind::Spot { .. } => {
+                    (place - bounds.center()).length().max(bounds.radius())
+                }
+            };
+            light.light.into_iter().fold(0.0, f64::max) * FRAC_1_PI / (distance * distance)
+        };
+        let strongest = self.lights.iter().map(strength).fold(0.0, f64::max);
+        (strongest > MOST && strongest.is_finite()).then_some(strongest)
+    }
+}
+
+/// What dims lights that are so many times too strong, with one digit.
+pub fn dimmed(times: f64) -> f64 {
+    let digits = format!("{:.0e}", 1.0 / times);
+    digits.parse().unwrap_or(1.0 / times)
 }
 
 fn round_vector(vector: DVec3) -> [f32; 3] {

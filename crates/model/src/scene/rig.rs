@@ -17,6 +17,8 @@ pub struct Rig {
     pub samplers: Vec<Sampler>,
     /// Transforms relative to a node, of the instances of nodes that show their mesh many times.
     pub placements: Vec<DMat4>,
+    /// Turns the nodes without a parent; none: they stand as the file has them.
+    pub turn: Option<DMat4>,
     /// World-space box of sampled vertices in the rest pose and in the clips. Used to frame the
     /// camera; not a strict bound.
     pub motion_bounds: Bounds,

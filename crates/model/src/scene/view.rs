@@ -9,6 +9,7 @@ use super::{
     background::Background,
     bounds::Bounds,
     camera::{Camera, Projection},
+    model::Scene,
     particle_discs::ParticleTimeline,
     pose::Pose,
     punctual::PlacedLight,
@@ -51,8 +52,11 @@ pub struct View {
 /// How the scene stands at the moment of a picture.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SceneState {
-    /// Placement of the whole scene (its spin).
+    /// Placement of the whole scene: its spin, about the point from which the world counts.
     pub world_from_scene: DMat4,
+    /// The point of the scene from which the world of the picture counts, so that patterns in the
+    /// world are the same wherever a model lies.
+    pub origin: DVec3,
     /// The pose of its nodes, joints and morph targets; none: the rest pose.
     pub pose: Option<Arc<Pose>>,
     /// The lights that come with the scene, where they are.
@@ -61,6 +65,19 @@ pub struct SceneState {
     pub polyline: Arc<[[f32; 3]]>,
     /// The steps that particles have taken; none: they are where they begin.
     pub particles: Option<Arc<ParticleTimeline>>,
+}
+
+impl SceneState {
+    /// Placement of what does not spin: walls.
+    pub fn world_from_walls(&self) -> DMat4 {
+        // Not the negative, which is -0 of 0.
+        DMat4::from_translation(DVec3::ZERO - self.origin)
+    }
+
+    /// Placement of particles, which spin with the scene and count from the same point as the world.
+    pub fn world_from_particles(&self) -> DMat4 {
+        self.world_from_scene * DMat4::from_translation(self.origin)
+    }
 }
 
 /// How finely a view resolves positions and shadows.
@@ -227,6 +244,21 @@ impl View {
             Some([near, far]) => far + depth * (near - far),
             // The third row of the matrix is (0, 0, 0, near).
             None => self.clip_from_world.w_axis.z / depth,
+        }
+    }
+
+    /// The transform of an instance of `scene`, in its pose if it has one.
+    pub fn world_from_instance(&self, scene: &Scene, index: usize, pose: Option<&Pose>) -> DMat4 {
+        let (state, instance) = (&self.scene_state, &scene.instances[index]);
+        let own = pose.map_or(instance.world_from_object, |pose| {
+            pose.instance_transform(index)
+        });
+        if index >= scene.instances.len() - scene.walls {
+            state.world_from_walls() * own
+        } else if Some(instance.primitive) == scene.particle_discs {
+            state.world_from_particles() * own
+        } else {
+            state.world_from_scene * own
         }
     }
 

@@ -117,7 +117,8 @@ fn particle_errors(
 /// A position of the scene in the picture, in pixels from its center; none between the eye and the
 /// near plane.
 fn projected(view: &View, position: DVec3) -> Option<DVec2> {
-    let clip = view.clip_from_world * view.scene_state.world_from_scene * position.extend(1.0);
+    let clip =
+        view.clip_from_world * view.scene_state.world_from_particles() * position.extend(1.0);
     let half = DVec2::new(f64::from(view.width), f64::from(view.height)) * 0.5;
     (clip.z <= clip.w && clip.w > 0.0).then(|| clip.truncate().truncate() / clip.w * half)
 }

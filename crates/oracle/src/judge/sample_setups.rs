@@ -12,7 +12,7 @@ use super::super::{
     shot::Shot,
 };
 use crate::{
-    effects::hooks::{SampleHook, TriangleSetup},
+    effects::hooks::{ROUNDING, SampleHook, TriangleSetup},
     frame::Geometry,
     scene::draw::totals,
 };
@@ -39,10 +39,18 @@ pub fn wrong_setups(shot: &Shot, geometry: &Geometry) -> u64 {
         "the sample setups are of another scene"
     );
     let wrong = |(entry, given): (Option<SetupEntry>, &[[u32; 4]])| {
-        let Some(SetupEntry { setup, mask }) = entry else {
+        let Some(SetupEntry {
+            setup,
+            is_clipped,
+            mask,
+        }) = entry
+        else {
             return 0;
         };
-        let setup = with_center_error(shot, setup);
+        let mut setup = with_center_error(shot, setup);
+        if is_clipped {
+            setup.center_screen_error = center_screen_error(shot, setup.triangle);
+        }
         let mask_is_wrong = match (masks, mask) {
             (0, _) => false,
             (_, None) => given[records - 1][2] != 0,
@@ -63,6 +71,34 @@ pub fn wrong_setups(shot: &Shot, geometry: &Geometry) -> u64 {
         .zip(geometry.sample_setups.par_chunks(records))
         .map(wrong)
         .sum()
+}
+
+/// How far the mean of a triangle's corners in clip space may be off in the picture, as a fraction
+/// of it: a quotient whose divisor may cancel. Infinite where the mean may lie on either side of the
+/// eye.
+fn center_screen_error(shot: &Shot, id: u32) -> f64 {
+    let draw = shot.draw_of(id).expect("a triangle of the shot");
+    let evaluator = VertexEvaluator::new(shot.scene, draw, shot.view, shot.stack);
+    let corners = evaluator.triangle_corners(id - draw.first_triangle);
+    let clip = corners.map(|corner| evaluator.clip(corner).map(|p| DVec3::new(p.x, p.y, p.w)));
+    let [Ok(a), Ok(b), Ok(c)] = clip else {
+        return f64::INFINITY;
+    };
+    let rounding = 4.0 * ROUNDING * (a.abs() + b.abs() + c.abs());
+    let (sum, error) = (
+        a + b + c,
+        clip_errors(shot, id).iter().sum::<DVec3>() + rounding,
+    );
+    if sum.z < -error.z {
+        return 0.0;
+    }
+    let least = sum.z - error.z;
+    if least <= 0.0 {
+        return f64::INFINITY;
+    }
+    let across =
+        |sum_of: f64, error_of: f64| 0.5 * (error_of + error.z * (sum_of / sum.z).abs()) / least;
+    across(sum.x, error.x).max(across(sum.y, error.y))
 }
 
 /// Bounds of the errors of a triangle's corners in x, y and w of clip space.

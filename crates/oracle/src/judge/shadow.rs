@@ -39,7 +39,8 @@ pub fn judge_shadow_map(
     let Some(view) = shot.stack.light_view(shot.scene, shot.view) else {
         return Ok(());
     };
-    let view = view.with_grid(view.precision.subpixel_bits, map.geometry.is_relative);
+    let is_relative = map.geometry.is_relative || view.precision.is_relative;
+    let view = view.with_grid(view.precision.subpixel_bits, is_relative);
     let casting = shot.stack.shadow_casters();
     let draws = casting.draws(shot.scene, &view)?;
     let shot = Shot::new(shot.scene, &draws, &view, &casting);

@@ -9,18 +9,14 @@ use super::{
     shading::TOGETHER,
 };
 use crate::{
-    effects::hooks::{Image, ImageAt, Lens, PassInput, Picture, Signs},
+    effects::hooks::{Image, ImageAt, ImagePass, Lens, PassHook, PassInput, Picture, Signs},
     frame::{KeptPass, linear_bytes},
     math::srgb,
     work::{Canceled, map_each},
 };
 
-/// How much a color that a pass reads may be off in f32, as a fraction of its largest channel:
-/// what `pow` may err by, and some 2^6 operations.
-const COLOR_ERROR: f64 = 1.0 / (1 << 17) as f64;
-
-/// How a chain of passes errs: every value that decides a step by `step_offset`, and every color
-/// that is written by [`COLOR_ERROR`], in the direction of `signs`.
+/// How a pass errs: every value that decides a step by `step_offset`, and depths in meters in the
+/// direction of `signs`.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PassPerturbation {
     pub step_offset: f64,
@@ -35,12 +31,118 @@ pub struct PassStart<'a> {
     pub kept: &'a [[f32; 4]],
 }
 
-/// What they make of it.
-pub struct Passed {
-    /// The picture, gamma-encoded, not yet rounded to bytes; without passes that before them.
-    pub colors: Vec<DVec4>,
-    /// What the kept pass wrote, if there is one.
-    pub kept: Option<Vec<DVec4>>,
+/// One pass of a stack.
+pub struct Step<'a> {
+    hook: &'a PassHook,
+    words: &'a [u32],
+    index: usize,
+    pass: &'a ImagePass,
+    /// What the kept pass of its effect wrote in the previous frame.
+    before: Option<Image>,
+}
+
+impl Step<'_> {
+    /// Is what it writes the picture that the next effect begins with?
+    pub fn ends_effect(&self) -> bool {
+        self.index + 1 == self.hook.passes.len()
+    }
+
+    /// Does what it writes live to the next frame?
+    pub fn is_kept(&self) -> bool {
+        self.pass.kept.is_some()
+    }
+
+    /// What it writes, given the picture that its effect began with and what the pass before it
+    /// wrote. All channels are finite.
+    pub fn written(
+        &self,
+        shot: &Shot,
+        picture: &Picture,
+        [source, last]: [&Image; 2],
+        perturbation: PassPerturbation,
+    ) -> Result<Image, Canceled> {
+        let input = PassInput {
+            picture,
+            lens: Lens::of(shot.view),
+            source,
+            last,
+            kept: self.before.as_ref(),
+            signs: perturbation.signs,
+            panorama: shot.scene.panorama.as_deref(),
+        };
+        let size = self.pass.size([shot.view.width, shot.view.height]);
+        let pixels = size[0] as usize * size[1] as usize;
+        let at = |i: usize| ImageAt {
+            x: (i % size[0] as usize) as i64,
+            y: (i / size[0] as usize) as i64,
+            size,
+            scale: self.pass.scale,
+            step_offset: perturbation.step_offset,
+            input: &input,
+        };
+        let write = |part: usize| {
+            let first = part * TOGETHER;
+            let part: Vec<ImageAt<'_>> = (first..pixels.min(first + TOGETHER)).map(at).collect();
+            let written = (self.hook.run)(self.index, &part, self.words);
+            written.into_iter().map(finite).collect::<Vec<_>>()
+        };
+        let parts = map_each((0..pixels.div_ceil(TOGETHER)).into_par_iter(), write)?;
+        Ok(Image {
+            size,
+            colors: parts.concat(),
+        })
+    }
+}
+
+/// A channel that is NaN or infinite in f32 is 0, so that no pass spreads it.
+fn finite(color: DVec4) -> DVec4 {
+    color.map(|channel| {
+        if (channel as f32).is_finite() {
+            channel
+        } else {
+            0.0
+        }
+    })
+}
+
+/// The passes of a stack, in order.
+pub fn steps<'a>(shot: &Shot<'a>, kept: &[[f32; 4]]) -> Vec<Step<'a>> {
+    let size = [shot.view.width, shot.view.height];
+    let hooks = shot.stack.each(|hooks| hooks.passes.as_ref());
+    hooks
+        .flat_map(|(hook, words)| {
+            hook.passes
+                .iter()
+                .enumerate()
+                .map(move |(index, pass)| Step {
+                    hook,
+                    words,
+                    index,
+                    pass,
+                    before: hook
+                        .kept()
+                        .and_then(|(pass, _)| kept_image(pass.size(size), kept)),
+                })
+        })
+        .collect()
+}
+
+/// The picture before the passes in linear light.
+pub fn begun(shot: &Shot, resolved: &[[u8; 4]]) -> Result<Image, Canceled> {
+    let light = linear_bytes();
+    let of_bytes = |bytes: &[u8; 4]| {
+        let [r, g, b, alpha] = bytes.map(usize::from);
+        DVec4::new(light[r], light[g], light[b], alpha as f64 / 255.0)
+    };
+    Ok(Image {
+        size: [shot.view.width, shot.view.height],
+        colors: map_each(resolved.par_iter(), of_bytes)?,
+    })
+}
+
+/// A color of linear light, gamma-encoded.
+pub fn gamma_encoded(color: DVec4) -> DVec4 {
+    DVec4::new(srgb(color.x), srgb(color.y), srgb(color.z), color.w)
 }
 
 /// Bytes of the picture that the passes of a stack make of `start`, and what the kept one wrote.
@@ -49,83 +151,28 @@ pub fn passed(
     input: &ResolveInput,
     start: PassStart<'_>,
 ) -> Result<(Vec<[u8; 4]>, Option<KeptPass>), Canceled> {
-    let passed = passed_colors(shot, input, start, PassPerturbation::default())?;
-    let kept = passed.kept.map(|after| KeptPass {
-        before: start.kept.to_vec(),
-        after: after.iter().map(|c| c.as_vec4().to_array()).collect(),
-    });
-    Ok((passed.colors.into_iter().map(bytes).collect(), kept))
-}
-
-/// The same before anything is rounded.
-pub fn passed_colors(
-    shot: &Shot,
-    input: &ResolveInput,
-    start: PassStart<'_>,
-    perturbation: PassPerturbation,
-) -> Result<Passed, Canceled> {
     let tables = PictureTables::of(shot);
     let picture = tables.picture(shot, input);
-    let light = linear_bytes();
-    let size = [shot.view.width, shot.view.height];
-    let of_bytes = |(i, bytes): (usize, &[u8; 4])| {
-        let [r, g, b, alpha] = bytes.map(usize::from);
-        let color = DVec4::new(light[r], light[g], light[b], alpha as f64 / 255.0);
-        perturbed(color, i, size, perturbation)
-    };
-    let mut source = Image {
-        size,
-        colors: map_each(start.resolved.par_iter().enumerate(), of_bytes)?,
-    };
-    let mut written = None;
-    for (hook, words) in shot.stack.each(|hooks| hooks.passes.as_ref()) {
-        let before = hook
-            .kept()
-            .and_then(|(pass, _)| kept_image(pass.size(size), start.kept));
-        let mut last: Option<Image> = None;
-        for (index, pass) in hook.passes.iter().enumerate() {
-            let input = PassInput {
-                picture: &picture,
-                lens: Lens::of(shot.view),
-                source: &source,
-                last: last.as_ref().unwrap_or(&source),
-                kept: before.as_ref(),
-                signs: perturbation.signs,
-                panorama: shot.scene.panorama.as_deref(),
-            };
-            let size = pass.size(size);
-            let pixels = size[0] as usize * size[1] as usize;
-            let at = |i: usize| ImageAt {
-                x: (i % size[0] as usize) as i64,
-                y: (i / size[0] as usize) as i64,
-                size,
-                scale: pass.scale,
-                step_offset: perturbation.step_offset,
-                input: &input,
-            };
-            let write = |part: usize| {
-                let first = part * TOGETHER;
-                let part: Vec<ImageAt<'_>> =
-                    (first..pixels.min(first + TOGETHER)).map(at).collect();
-                let written = (hook.run)(index, &part, words);
-                let each = (first..).zip(written);
-                each.map(|(i, color)| perturbed(color, i, size, perturbation))
-                    .collect::<Vec<_>>()
-            };
-            let parts = map_each((0..pixels.div_ceil(TOGETHER)).into_par_iter(), write)?;
-            let colors = parts.concat();
-            if pass.kept.is_some() {
-                written = Some(colors.clone());
-            }
-            last = Some(Image { size, colors });
+    let mut source = begun(shot, start.resolved)?;
+    let (mut last, mut kept) = (None::<Image>, None);
+    for step in steps(shot, start.kept) {
+        let read = [&source, last.as_ref().unwrap_or(&source)];
+        let written = step.written(shot, &picture, read, PassPerturbation::default())?;
+        if step.is_kept() {
+            let colors = written.colors.iter();
+            kept = Some(KeptPass {
+                before: start.kept.to_vec(),
+                after: colors.map(|c| c.as_vec4().to_array()).collect(),
+            });
         }
-        source = last.unwrap_or(source);
+        if step.ends_effect() {
+            (source, last) = (written, None);
+        } else {
+            last = Some(written);
+        }
     }
-    let encoded = |color: DVec4| DVec4::new(srgb(color.x), srgb(color.y), srgb(color.z), color.w);
-    Ok(Passed {
-        colors: source.colors.into_iter().map(encoded).collect(),
-        kept: written,
-    })
+    let encoded = source.colors.into_iter().map(gamma_encoded);
+    Ok((encoded.map(bytes).collect(), kept))
 }
 
 /// What a kept pass of this size wrote in the previous frame; none, which reads as zeros, if that
@@ -137,18 +184,6 @@ fn kept_image(size: [u32; 2], pixels: &[[f32; 4]]) -> Option<Image> {
         size,
         colors: pixels.iter().map(color).collect(),
     })
-}
-
-/// A color of the pixel with this index, moved as a perturbation says.
-fn perturbed(
-    color: DVec4,
-    index: usize,
-    [width, _]: [u32; 2],
-    PassPerturbation { signs, .. }: PassPerturbation,
-) -> DVec4 {
-    let (x, y) = (index % width as usize, index / width as usize);
-    let by = signs.at(x as i64, y as i64) * COLOR_ERROR * color.truncate().abs().max_element();
-    (color.truncate() + by).extend(color.w)
 }
 
 impl PictureTables {

@@ -54,8 +54,10 @@ pub fn sample_setups(shot: &Shot, geometry: &Geometry) -> Vec<[u32; 4]> {
 
 /// What is known of a triangle or clipped triangle.
 pub struct SetupEntry {
-    /// Without the error of the center.
+    /// Without the errors of the center.
     pub setup: TriangleSetup,
+    /// It is of a clipped triangle, whose center in the picture follows from clip space.
+    pub is_clipped: bool,
     /// Mask coordinates with the number of the primitive; none without a mask.
     pub mask: Option<(usize, MaskCoords)>,
 }
@@ -148,10 +150,12 @@ fn entry(shot: &Shot, geometry: &Geometry, id: u32, drawn: &Drawn) -> Option<Set
         size: [view.width, view.height],
         center,
         center_error_m: 0.0,
+        center_screen_error: 0.0,
         center_screen: evaluator.in_picture(center).unwrap_or_else(on_screen),
     };
     Some(SetupEntry {
         setup,
+        is_clipped: clipped.is_some(),
         mask: mask.map(|mask| (draw.primitive, mask)),
     })
 }

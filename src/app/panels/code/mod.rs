@@ -5,7 +5,11 @@ mod highlight;
 
 use std::path::{Path, PathBuf};
 
-use egui::{self, Color32, Key, Modifiers, ScrollArea, TextEdit, TextStyle, Ui, pos2, vec2};
+use egui::{
+    self, Color32, Key, Modifiers, ScrollArea, TextEdit, TextStyle, Ui, pos2,
+    text::{CCursor, CCursorRange},
+    vec2,
+};
 
 use crate::app::panels::panel::Panel;
 use crate::{
@@ -228,7 +232,7 @@ fn text_ui(ui: &mut Ui, open: &mut Open, state: &State) {
                 bottom: 4,
             })
             .layouter(&mut layouter);
-        let shown = edit.show(ui);
+        let mut shown = edit.show(ui);
         shown
             .response
             .response
@@ -236,6 +240,21 @@ fn text_ui(ui: &mut Ui, open: &mut Open, state: &State) {
             .accessible_name(format!("Text of {}", open.name));
         if shown.response.response.changed() {
             open.changed_s = state.now_s;
+            if let (true, Some(range)) =
+                (ui.input(|i| i.key_pressed(Key::Enter)), shown.cursor_range)
+            {
+                let at = indent(&mut open.text, range.primary.index.0);
+                let range = CCursorRange::one(CCursor::new(at));
+                shown.state.cursor.set_char_range(Some(range));
+                shown.state.store(ui.ctx(), text_id());
+            }
+        }
+        // The column of numbers stays in view when the text is scrolled sideways.
+        let numbers = shown.galley_pos.x.max(ui.clip_rect().min.x + margin);
+        if numbers > shown.galley_pos.x {
+            let column = ui.clip_rect().with_max_x(numbers);
+            ui.painter()
+                .rect_filled(column, 0.0, ui.visuals().text_edit_bg_color());
         }
         let enabled = state.session.preset().stack.get(&open.name);
         let error_line = open
@@ -258,7 +277,7 @@ fn text_ui(ui: &mut Ui, open: &mut Open, state: &State) {
                     .rect_filled(line, 0.0, color.gamma_multiply(0.15));
             }
             ui.painter().text(
-                pos2(rect.min.x - char_width, rect.min.y),
+                pos2(numbers - char_width, rect.min.y),
                 egui::Align2::RIGHT_TOP,
                 index + 1,
                 font.clone(),
@@ -278,6 +297,28 @@ fn text_ui(ui: &mut Ui, open: &mut Open, state: &State) {
             }
         }
     });
+}
+
+/// Begins the line at character `at` of `text` as the line before it, and deeper behind a `{`.
+/// Returns the place behind that.
+fn indent(text: &mut String, at: usize) -> usize {
+    let offset = text
+        .char_indices()
+        .nth(at)
+        .map_or(text.len(), |(offset, _)| offset);
+    let Some(before) = text[..offset].strip_suffix('\n') else {
+        return at;
+    };
+    let line = before.rsplit('\n').next().unwrap_or_default();
+    let mut added: String = line
+        .chars()
+        .take_while(|c| *c == ' ' || *c == '\t')
+        .collect();
+    if line.trim_end().ends_with('{') {
+        added += "    ";
+    }
+    text.insert_str(offset, &added);
+    at + added.chars().count()
 }
 
 fn value_color() -> Color32 {
@@ -300,6 +341,22 @@ fn value_on(line: &str, enabled: &EnabledEffect) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_new_line_begins_as_the_one_before_it_and_deeper_in_a_block() {
+        for (before, expected, at) in [
+            ("fn f() {\n}", "fn f() {\n    }", 13),
+            ("    let é = 1;\n", "    let é = 1;\n    ", 19),
+            ("a", "a", 1),
+        ] {
+            let mut text = before.to_owned();
+            let place = before
+                .find('\n')
+                .map_or(1, |byte| before[..=byte].chars().count());
+            assert_eq!(indent(&mut text, place), at, "{before}");
+            assert_eq!(text, expected);
+        }
+    }
 
     #[test]
     fn unsaved_text_stays_when_the_file_changes_and_saved_text_follows_it() {

@@ -2,6 +2,8 @@
 
 pub(super) mod buttons;
 mod path;
+mod places;
+mod purpose;
 mod questions;
 
 use std::{
@@ -112,11 +114,18 @@ impl Dialogs {
                     .display()
                     .to_string()
             }
-            Purpose::Export => std::env::current_dir()
-                .unwrap_or_default()
-                .join(format!("{id}.png"))
-                .display()
-                .to_string(),
+            Purpose::Export | Purpose::Sheet => {
+                let end = if purpose == Purpose::Sheet {
+                    "-sweep"
+                } else {
+                    ""
+                };
+                std::env::current_dir()
+                    .unwrap_or_default()
+                    .join(format!("{id}{end}.png"))
+                    .display()
+                    .to_string()
+            }
         };
         // Its own file keeps its name, and so does a look on a model that has none yet.
         let own_name = (!session.preset_file.read_only).then(|| {

@@ -13,11 +13,13 @@ use egui::{
     vec2,
 };
 
-use super::buttons::{Choice, buttons};
+use super::{
+    buttons::{Choice, buttons},
+    places::places_ui,
+};
 use crate::{
     app::{
-        files::apply::export,
-        files::apply::save_to,
+        files::apply::{export, save_sheet, save_to},
         files::{
             command::Purpose,
             completion::{self, Entry, Listing},
@@ -27,47 +29,8 @@ use crate::{
         shell::command::Commands,
         widgets::{form::is_entered, size::size_ui, text::cut_middle, theme},
     },
-    preset_file::{MAX_NAME, ModelFormat},
+    preset_file::MAX_NAME,
 };
-
-impl Purpose {
-    const fn title(self) -> &'static str {
-        match self {
-            Self::Open => "Open",
-            Self::SaveAs => "Save preset as",
-            Self::Export => "Export PNG",
-        }
-    }
-
-    fn hint(self) -> String {
-        match self {
-            Self::Open => format!(
-                "A preset (.toml), a model ({}), an exported picture (.png), an effect (.wgsl), a preset's id, or builtin:teapot",
-                ModelFormat::names(", ")
-            ),
-            Self::SaveAs => "Presets in the suggested folder appear in the list on the left. The description, tags and test of the preset that it comes from are left out".into(),
-            Self::Export => {
-                "The picture contains the preset: open the picture to get it back".into()
-            }
-        }
-    }
-
-    const fn verb(self) -> &'static str {
-        match self {
-            Self::Open => "Open",
-            Self::SaveAs | Self::Export => "Save",
-        }
-    }
-
-    /// What a name without an extension gets.
-    const fn extension(self) -> Option<&'static str> {
-        match self {
-            Self::Open => None,
-            Self::SaveAs => Some("toml"),
-            Self::Export => Some("png"),
-        }
-    }
-}
 
 /// Longest side of an exported picture, pixels: its readback stays below 512 MiB.
 const MAX_EXPORT_SIDE: u32 = 8192;
@@ -150,10 +113,17 @@ impl PathDialog {
 
     /// The file that the dialog names.
     pub fn path(&self) -> PathBuf {
-        completion::with_extension(
+        let path = completion::with_extension(
             &completion::expand_home(self.text.trim()),
             self.purpose.extension(),
-        )
+        );
+        match (self.purpose, path.file_stem(), path.extension()) {
+            (Purpose::Open, ..) | (_, None, _) | (_, _, None) => path,
+            (_, Some(stem), Some(extension)) => {
+                let [stem, extension] = [stem, extension].map(|part| part.to_string_lossy());
+                path.with_file_name(format!("{}.{extension}", stem.trim()))
+            }
+        }
     }
 
     /// Sends the command of the dialog with its path. Returns false, with an error in the dialog,
@@ -189,13 +159,14 @@ impl PathDialog {
             }
             Purpose::Open => commands.open(typed.to_owned()),
             Purpose::SaveAs => {
-                let name = self.preset_name();
+                let name = self.preset_name().trim().to_owned();
                 commands.run(|app| save_to(app, path, Some(name)));
             }
             Purpose::Export => {
                 let size = self.size;
                 commands.run(move |app| export(app, path, size));
             }
+            Purpose::Sheet => commands.run(|app| save_sheet(app, path)),
         }
         true
     }
@@ -258,6 +229,15 @@ impl PathDialog {
         })
     }
 
+    /// Goes to a folder; the name of a file to be written stays.
+    fn go_to(&mut self, folder: &Path) {
+        let name = match self.purpose {
+            Purpose::Open => "",
+            _ => completion::name_of(&self.text),
+        };
+        self.set_text(folder.join(name).to_string_lossy().into_owned());
+    }
+
     /// Carries out the row that was clicked or entered. A file of *Open* is opened at once; returns
     /// true then.
     fn take(&mut self, row: &Row) -> bool {
@@ -300,6 +280,11 @@ pub fn path_ui(
     ui.add_space(theme::HALF);
     let rows = dialog.rows(recents);
     let mut is_accepted = field_ui(ui, dialog, &rows);
+    if cfg!(not(target_arch = "wasm32"))
+        && let Some(folder) = places_ui(ui, recents)
+    {
+        dialog.go_to(&folder);
+    }
     is_accepted |= list_ui(ui, dialog, &rows, missing);
     if dialog.purpose == Purpose::SaveAs {
         let mut name = dialog.preset_name();
@@ -318,7 +303,13 @@ pub fn path_ui(
     if dialog.purpose == Purpose::Export {
         ui.horizontal(|ui| {
             ui.label("Size");
-            size_ui(ui, "the picture", &mut dialog.size, 1, MAX_EXPORT_SIDE);
+            drop(size_ui(
+                ui,
+                "the picture",
+                &mut dialog.size,
+                1,
+                MAX_EXPORT_SIDE,
+            ));
         });
     }
     if let Some(error) = &dialog.error {

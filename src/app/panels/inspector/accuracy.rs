@@ -10,8 +10,7 @@ use crate::{
     app::{
         picture::{
             anti_aliasing,
-            findings::Findings,
-            measured::{UNJUDGED, time_line},
+            measured::{self, UNJUDGED, color_text, counts_text, time_line},
             tier_times::{self, TierNumbers, TierTime},
         },
         shell::{
@@ -125,43 +124,71 @@ fn names_ui(ui: &mut Ui, setting: &'static Setting, commands: &Commands, chosen:
 /// What each tier costs and errs by on the open picture. While this is looked at, tiers are
 /// measured.
 fn tiers_ui(ui: &mut Ui, state: &State, commands: &Commands, chosen: Tier) {
+    let pixels = state.picture.screen.drawn().map_or(0.0, |drawn| {
+        f64::from(drawn.view.width) * f64::from(drawn.view.height)
+    });
+    let mut last: Option<(Tier, TierNumbers)> = None;
     let shown = ui.vertical(|ui| {
         for tier in Tier::ALL {
-            let text = match tier_times::numbers(state, tier) {
-                Some(numbers) => format!(
+            let numbers = tier_times::numbers(state, tier);
+            let same = last
+                .as_ref()
+                .zip(numbers.as_ref())
+                .filter(|((_, last), numbers)| last.kernel == numbers.kernel)
+                .map(|((last, _), _)| *last);
+            let text = match (&numbers, same) {
+                (Some(_), Some(same)) => format!("the same options here as {}", same.name()),
+                (Some(numbers), None) => format!(
                     "{}, {}",
                     time_text(numbers.time, state.picture.screen.gpu.caps.timestamps),
-                    error_text(&numbers)
+                    error_text(numbers, pixels)
                 ),
-                None if state.picture.screen.plan().is_none() => "not measured yet".into(),
-                None => "this picture cannot be drawn so".into(),
+                (None, _) if state.picture.screen.plan().is_none() => "not measured yet".into(),
+                (None, _) => "this picture cannot be drawn so".into(),
             };
-            line_ui(
-                ui,
-                tier.name(),
-                text,
-                if tier == chosen {
-                    theme::text_strong()
-                } else {
-                    theme::text_weak()
-                },
-            );
+            let color = match tier == chosen {
+                true => theme::text_strong(),
+                false => theme::text_weak(),
+            };
+            let line = line_ui(ui, tier.name(), text, color);
+            if let Some(same) = same {
+                line.on_hover_text(same_text(state, tier, same));
+            } else {
+                last = numbers.map(|numbers| (tier, numbers));
+            }
         }
     });
-    let hint = "Milliseconds of a frame, measured on this picture while the window is at rest. Wrong pixels per million and the largest \
-                difference of a color, as Verify has judged this picture, or (≤) what the options of the tier may err by.";
+    let hint = "Milliseconds of a frame, measured on this picture while the window is at rest. Pixels and the largest difference of a \
+                color as Verify has judged this picture, or the most that the options of the tier may err by. Tiers that take the same options \
+                here are the same picture.";
     if ui.is_rect_visible(shown.response.on_hover_text(hint).rect) {
         commands.run(|app| app.state.picture.tier_times.is_looked_at = true);
     }
 }
 
 /// A name and what there is to say of it.
-fn line_ui(ui: &mut Ui, name: &str, text: String, color: Color32) {
+fn line_ui(ui: &mut Ui, name: &str, text: String, color: Color32) -> egui::Response {
     ui.horizontal(|ui| {
         ui.add_space(theme::GAP);
         ui.add_sized([64.0, 16.0], egui::Label::new(theme::weak(name).size(11.5)));
-        ui.add(egui::Label::new(RichText::new(text).size(11.5).color(color)).truncate());
-    });
+        ui.add(egui::Label::new(RichText::new(text).size(11.5).color(color)).truncate())
+    })
+    .inner
+}
+
+/// Why two tiers are the same here, and what would have to change for them to differ.
+fn same_text(state: &State, tier: Tier, same: Tier) -> String {
+    let pins = state.session.preset().accuracy.pins.words();
+    let unpin = match pins.as_str() {
+        "" => String::new(),
+        pins => format!(" Options that are pinned stay in every tier; unpin them: {pins}."),
+    };
+    format!(
+        "{} and {} would differ where an option saves time on this adapter and its error lies between what they allow: in another size, \
+         on another model, or with other effects.{unpin}",
+        same.name(),
+        tier.name()
+    )
 }
 
 fn time_text(time: TierTime, has_timer: bool) -> String {
@@ -173,53 +200,35 @@ fn time_text(time: TierTime, has_timer: bool) -> String {
     }
 }
 
-/// `0 ppm, 17 true, Δ 1`, or what the options may err by: `≤ 400 ppm, Δ ≤ 2`.
-fn error_text(numbers: &TierNumbers) -> String {
+/// `no wrong pixel, 17 differ by rounding`, or what the options may err by.
+fn error_text(numbers: &TierNumbers, pixels: f64) -> String {
     if let Some(judged) = numbers.judged {
-        let against_true = judged
-            .true_ppm
-            .map_or_else(String::new, |ppm| format!(", {} true", short(ppm)));
-        return format!(
-            "{} ppm{against_true}, Δ {}",
-            short(judged.wrong_ppm),
-            judged.channel
-        );
+        let counts = counts_text(judged.wrong, judged.by_rounding);
+        return format!("{counts}{}", color_text(judged.channel));
     }
+    let ppm = numbers.bound.wrong_ppm.min(1e6);
+    let wrong = match (ppm * pixels * 1e-6).floor() as u64 {
+        0 => "no wrong pixel expected".into(),
+        most => format!("at most {} ({} ppm)", counts_text(most, None), short(ppm)),
+    };
     format!(
-        "≤ {} ppm, Δ ≤ {}",
-        short(numbers.bound.wrong_ppm.min(1e6)),
-        short(numbers.bound.channel.min(255.0))
-    )
-}
-
-/// `12.34 ms GPU, color Δ 0` and `per million: 0 wrong, 17 by rounding`.
-fn measured_texts(time: &str, findings: &Findings) -> (String, String) {
-    let report = &findings.accuracy;
-    let ppm = |count: u64| short(count as f64 * 1e6 / (report.pixels as f64).max(1.0));
-    let against_true = findings
-        .wrong_against_true()
-        .map_or_else(String::new, |count| format!(", {} by rounding", ppm(count)));
-    (
-        format!("{time}, color Δ {}", report.max_color_delta),
-        format!(
-            "per million: {} wrong{against_true}",
-            ppm(report.wrong_triangles)
-        ),
+        "{wrong}{}",
+        color_text(numbers.bound.channel.min(255.0) as u8)
     )
 }
 
 /// Milliseconds and error of the picture that is shown.
 fn numbers_ui(ui: &mut Ui, state: &State) {
     let time = time_line(Some(&state.picture.screen)).0;
-    let (measured, wrong) = match state
+    let verdict = state
         .picture
         .verification
-        .verdict_on(state.picture.screen.drawn())
-    {
-        Some(verdict) => measured_texts(&time, &verdict.findings),
-        None => (time, format!("{UNJUDGED} (V)")),
-    };
-    line_ui(ui, "measured", measured, theme::text_strong());
+        .verdict_on(state.picture.screen.drawn());
+    let wrong = verdict.map_or_else(
+        || format!("{UNJUDGED} (V)"),
+        |verdict| measured::error_text(&verdict.findings),
+    );
+    line_ui(ui, "measured", time, theme::text_strong());
     line_ui(ui, "", wrong, theme::text_strong());
 }
 

@@ -1,4 +1,4 @@
-//! The largest f32 error of a user's effect, below its parameters; a click marks where it is.
+//! The largest f32 error of an effect, below its parameters; a click marks where it is.
 
 use std::sync::Arc;
 
@@ -11,13 +11,13 @@ use crate::{
         shell::{command::Commands, state::State},
         widgets::theme,
     },
-    effect_files::Quantity,
+    effect_files::{Quantity, has_f32_error},
     effects::Effect,
 };
 
-/// Shows what is known of the errors of `effect`; nothing for a built-in effect.
+/// Shows what is known of the errors of `effect`; nothing where no function can be measured.
 pub fn precision_ui(ui: &mut Ui, state: &State, commands: &Commands, effect: &Arc<Effect>) {
-    if !effect.is_of_file() {
+    if !has_f32_error(effect) {
         return;
     }
     // Flush with the labels of the parameters.
@@ -40,11 +40,12 @@ fn errors_ui(ui: &mut Ui, state: &State, commands: &Commands, effect: &Arc<Effec
         ui.label(theme::small(text));
         return;
     };
-    let found = measured
-        .effects
-        .iter()
-        .find(|(known, _)| known == effect)
-        .map_or(&[][..], |(_, errors)| errors);
+    let found = measured.effects.iter().find(|(known, _)| known == effect);
+    let Some((_, found)) = found else {
+        ui.label(theme::small("f32 error: not measured here"))
+            .on_hover_text("This picture does not call the effect's function: nothing that it acts on is seen, or the light of the scene takes its place.");
+        return;
+    };
     let [width, height] = measured.size;
     let about = format!(
         "The effect's text in f32 against f64, on the oracle's picture of {width}x{height} pixels."
@@ -54,7 +55,10 @@ fn errors_ui(ui: &mut Ui, state: &State, commands: &Commands, effect: &Arc<Effec
             .on_hover_text(&about);
     }
     for error in found {
-        let text = format!("f32 error: {}", words(error));
+        let text = match error.quantity {
+            Quantity::Reach => words(error),
+            _ => format!("f32 error: {}", words(error)),
+        };
         let [x, y] = error.uv.unwrap_or_default();
         let place = match error.uv {
             Some(_) => format!(
@@ -84,6 +88,12 @@ fn errors_ui(ui: &mut Ui, state: &State, commands: &Commands, effect: &Arc<Effec
 
 /// `0.02 of 255`.
 fn words(error: &Error) -> String {
+    if error.quantity == Quantity::Reach {
+        return format!(
+            "moves a vertex {:.2} times as far as its @unit(m) add up to",
+            error.error
+        );
+    }
     let number = match error.error {
         error if error.is_infinite() => return "f32 is not finite, f64 is".into(),
         error if error >= 0.01 => format!("{error:.2}"),
@@ -93,7 +103,7 @@ fn words(error: &Error) -> String {
         Quantity::Color => format!("{number} of 255"),
         Quantity::Normal => format!("{number} in the normal"),
         Quantity::Vertex => format!("{number} m"),
-        Quantity::Sample => "a sample is decided otherwise".into(),
+        _ => "a sample is decided otherwise".into(),
     }
 }
 

@@ -70,15 +70,16 @@ fn error_lines(findings: Option<&Findings>) -> Vec<(String, String)> {
     let Some(findings) = findings else {
         return vec![("error".into(), "not measured".into())];
     };
-    let against_true = findings
-        .wrong_against_true()
-        .map_or_else(|| "not known".into(), group_digits);
+    let against_true = findings.wrong_against_true().map_or_else(
+        || "not known".into(),
+        |count| format!("{} px", group_digits(count)),
+    );
     vec![
         (
-            "wrong (snapped)".into(),
-            group_digits(findings.accuracy.wrong_triangles),
+            "wrong".into(),
+            format!("{} px", group_digits(findings.accuracy.wrong_triangles)),
         ),
-        ("wrong (true)".into(), against_true),
+        ("by rounding".into(), against_true),
         (
             "max Δ".into(),
             format!("{} of 255", findings.accuracy.max_color_delta),

@@ -16,7 +16,7 @@ use crate::{
     },
     params::{Stored as _, Value},
     preset::{
-        Preset,
+        NO_CAMERA, Preset,
         settings::{GROUND, Setting},
     },
     preset_file::surroundings,
@@ -26,6 +26,7 @@ use crate::{
 pub fn scene_ui(ui: &mut Ui, state: &State, commands: &Commands) {
     folder(ui, "Scene", true, |ui| {
         let preset = state.session.preset();
+        setting_ui(ui, state, commands, "scene.up");
         setting_ui(ui, state, commands, "scene.room");
         surroundings_ui(ui, state, commands);
         setting_ui(ui, state, commands, "scene.spin_deg_per_s");
@@ -188,21 +189,28 @@ fn first_bottom([r, g, b, alpha]: [f32; 4]) -> [f32; 4] {
     [r, g, b, alpha]
 }
 
+/// What the automatic camera does.
+const FRAMES_ALL: &str = "the whole scene";
+
 /// A menu of the scene's cameras. A camera of the preset takes precedence.
 fn cameras_ui(ui: &mut Ui, scene: &Scene, preset: &Preset, commands: &Commands) {
     let id = |index: usize| {
         let name = &scene.cameras[index].name;
         unique_name(name, index, scene.camera(name))
     };
+    let is_automatic = preset.scene_camera == NO_CAMERA;
     let chosen = match preset.camera {
+        None if is_automatic => Some(NO_CAMERA.to_owned()),
         None => Some(id(scene.camera(&preset.scene_camera).unwrap_or(0))),
         Some(_) => None,
     };
     let now = match &chosen {
         None => "the preset's own camera".to_owned(),
-        Some(id) => format!("camera {id}"),
+        Some(_) if is_automatic => FRAMES_ALL.to_owned(),
+        Some(id) => format!("camera {id} of the file"),
     };
     let offers = (0..scene.cameras.len()).map(|index| (id(index), id(index)));
+    let offers = offers.chain([(NO_CAMERA.to_owned(), FRAMES_ALL.to_owned())]);
     let hint = "Cameras of the scene. Moving the camera in the picture gives the preset its own.";
     let taken = scene_menu(ui, "scene.camera", now, (chosen.as_ref(), ""), offers, hint);
     if let Some(camera) = taken {

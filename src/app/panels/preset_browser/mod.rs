@@ -34,6 +34,7 @@ use crate::{
         widgets::{
             icons::{Icon, icon_button},
             panel::at_right,
+            text::with_own_paths,
             theme,
             tile::{Tile, Tiling},
         },
@@ -315,7 +316,7 @@ fn about_ui(ui: &mut Ui, entry: &GalleryEntry, item: &Item, about: &str) {
         }
     }
     let mut source = match (&entry.path, entry.origin) {
-        (Some(path), _) => path.display().to_string(),
+        (Some(path), _) => with_own_paths(path.display().to_string()),
         (None, Origin::Builtin) => "Built in".into(),
         (None, _) => String::new(),
     };

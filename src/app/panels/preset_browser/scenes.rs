@@ -13,7 +13,7 @@ use crate::{
             state::State,
         },
         widgets::{
-            text::{cut_middle, group_digits},
+            text::{cut_middle, group_digits, with_own_paths},
             theme,
         },
     },
@@ -60,7 +60,7 @@ pub fn scenes_ui(ui: &mut Ui, state: &State, commands: &Commands) {
 fn shown_ui(ui: &mut Ui, session: &Session) {
     let source = match &session.preset().scene {
         SceneSource::Builtin(query) => query.clone(),
-        SceneSource::File(path) => path.display().to_string(),
+        SceneSource::File(path) => with_own_paths(path.display().to_string()),
     };
     // A letter is some 8 points wide.
     let short = cut_middle(&source, (ui.available_width() / 8.0).max(8.0) as usize);

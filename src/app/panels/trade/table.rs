@@ -16,6 +16,7 @@ pub fn table_ui(
     points: &[Point],
     axes: &[&'static Axis],
     metric: Metric,
+    pixels: f64,
     current: &dyn Fn(&Point) -> bool,
 ) -> Option<usize> {
     let mut clicked = None;
@@ -28,7 +29,7 @@ pub fn table_ui(
         .auto_shrink(false)
         .show(ui, |ui| {
             egui::Grid::new("trade table")
-                .num_columns(5 + metrics.len())
+                .num_columns(6 + metrics.len())
                 .spacing([14.0, 3.0])
                 .show(ui, |ui| {
                     let options = if let [one] = axes {
@@ -36,11 +37,10 @@ pub fn table_ui(
                     } else {
                         "options".to_owned()
                     };
-                    let errors = ["wrong ppm", "color", "holes+doubles", "light ppm"];
-                    for heading in [options.as_str(), "ms", "5 %", "95 %"]
+                    let errors = ["ppm", "color", "holes+doubles", "light ppm"];
+                    for heading in [options.as_str(), "", "ms", "5 %", "95 %", "by rounding px"]
                         .into_iter()
                         .chain(metrics.iter().map(|metric| errors[*metric as usize]))
-                        .chain([""])
                     {
                         ui.label(theme::small(heading));
                     }
@@ -51,6 +51,7 @@ pub fn table_ui(
                             &points[i],
                             axes,
                             &metrics,
+                            pixels,
                             (standings[i], current(&points[i])),
                         ) {
                             clicked = Some(i);
@@ -67,6 +68,7 @@ fn row_ui(
     point: &Point,
     axes: &[&'static Axis],
     metrics: &[Metric],
+    pixels: f64,
     (standing, is_current): (Option<Standing>, bool),
 ) -> bool {
     let is_front = standing == Some(Standing::Front);
@@ -89,6 +91,18 @@ fn row_ui(
     let clicked = button
         .accessible_name(format!("Use {}", point.pins.words()))
         .clicked();
+    let remark = match standing {
+        _ if is_current => RichText::new("this preset").color(theme::amber()),
+        Some(Standing::Front) => RichText::new("on the front").color(theme::accent()),
+        Some(Standing::Tied) => RichText::new("within the noise").color(theme::text()),
+        Some(Standing::Dominated) => theme::weak("dominated"),
+        None if point.ms.is_none() => theme::weak("not timed"),
+        None => RichText::new(""),
+    };
+    let remark = ui.label(remark.size(11.5));
+    if let Some(note) = &point.note {
+        remark.on_hover_text(note);
+    }
     let cell = |ui: &mut Ui, value: Option<f64>| {
         let text = value.map_or_else(|| "not measured".into(), short);
         ui.label(
@@ -105,20 +119,11 @@ fn row_ui(
     [0, 1, 2]
         .into_iter()
         .for_each(|i| cell(ui, point.ms.map(|ms| [ms.p50, ms.p5, ms.p95][i])));
+    // Pixels of the size that is shown, also for a combination that was drawn at another size.
+    let rounded = point.error(Metric::Wrong);
+    cell(ui, rounded.map(|ppm| (ppm * pixels * 1e-6).round()));
     metrics
         .iter()
         .for_each(|metric| cell(ui, point.error(*metric)));
-    let remark = match standing {
-        _ if is_current => RichText::new("this preset").color(theme::amber()),
-        Some(Standing::Front) => RichText::new("on the front").color(theme::accent()),
-        Some(Standing::Tied) => RichText::new("within the noise").color(theme::text()),
-        Some(Standing::Dominated) => theme::weak("dominated"),
-        None if point.ms.is_none() => theme::weak("not timed"),
-        None => RichText::new(""),
-    };
-    let remark = ui.label(remark.size(11.5));
-    if let Some(note) = &point.note {
-        remark.on_hover_text(note);
-    }
     clicked
 }

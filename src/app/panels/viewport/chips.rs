@@ -8,12 +8,18 @@ use crate::{
         editing::session::FileId,
         files::open::cancel_loading,
         picture::{command::Picking, golden_check::Outcome},
-        shell::{action::Action, command::Commands, state::State},
+        shell::{
+            action::Action,
+            command::{Commands, Edit},
+            state::State,
+        },
         widgets::{
             icons::{Icon, icon_button},
             theme,
         },
     },
+    params::Value,
+    preset::NO_CAMERA,
     scene::camera::Projection,
 };
 
@@ -32,6 +38,7 @@ pub fn chips_ui(ui: &mut Ui, state: &State, commands: &Commands, rect: Rect, is_
     let mut left = ui.new_child(egui::UiBuilder::new().id_salt("state").max_rect(corner));
     left.vertical(|ui| {
         loading_ui(ui, state, commands);
+        offers_ui(ui, state, commands);
         let notes = states(state).into_iter().map(|(color, text)| Note {
             color,
             text,
@@ -102,21 +109,51 @@ fn loading_ui(ui: &mut Ui, state: &State, commands: &Commands) {
         .map_or("loading the scene".into(), |progress| {
             format!("loading the scene: {progress}")
         });
+    if offer_ui(ui, &text, "Stop", "Stop loading (Esc)", "Stop loading") {
+        commands.run(cancel_loading);
+    }
+}
+
+/// A note with a button, which says `hint` and is called `name`. Returns true if it was clicked.
+fn offer_ui(ui: &mut Ui, text: &str, button: &str, hint: &str, name: &str) -> bool {
     let frame =
         theme::toast_frame(theme::line()).inner_margin(egui::Margin::symmetric(NOTE_MARGIN, 4));
-    ui.horizontal(|ui| {
+    let row = ui.horizontal(|ui| {
         frame.show(ui, |ui| {
             ui.label(RichText::new(text).size(NOTE_TEXT).color(theme::text()));
-            if ui
-                .small_button("Stop")
-                .on_hover_text("Stop loading (Esc)")
-                .accessible_name("Stop loading")
-                .clicked()
-            {
-                commands.run(cancel_loading);
-            }
-        });
+            let button = ui.small_button(button).on_hover_text(hint);
+            button.accessible_name(name).clicked()
+        })
     });
+    row.inner.inner
+}
+
+/// What the first look at a model could do better, each with a button that does it.
+fn offers_ui(ui: &mut Ui, state: &State, commands: &Commands) {
+    let (preset, Some(scene)) = (state.session.preset(), state.session.scene()) else {
+        return;
+    };
+    if let Some(camera) = preset.cropping_camera(scene) {
+        let text = "the file's camera crops the model";
+        let hint = format!(
+            "Show the whole model instead of the view of camera {}. The menu of cameras under Scene goes back",
+            camera.name
+        );
+        if offer_ui(ui, text, "Show all", &hint, "Show the whole model") {
+            commands.edit(Edit::SceneCamera(NO_CAMERA.into()));
+        }
+    }
+    if let Some(dimmed) = preset.dimmed_lights(scene)
+        && let Some(studio) = preset.stack.get("studio")
+        && let Some(lights) = studio.effect.field("lights")
+    {
+        let text = "the file's lights are too strong";
+        let hint = format!("Set studio.lights to {dimmed}, as the plain look does");
+        if offer_ui(ui, text, "Dim", &hint, "Dim the lights") {
+            let lights = (studio.effect.clone(), lights.clone());
+            commands.edit(Edit::Parameter(lights, Value::number(dimmed)));
+        }
+    }
 }
 
 /// A note on the picture.

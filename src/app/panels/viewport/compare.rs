@@ -135,14 +135,22 @@ impl Compare {
     /// What A shows, as `A` is labeled.
     pub fn name(&self) -> String {
         let name: &str = match &self.kept {
-            None => return "reference".into(),
+            None => return "this preset, most exact".into(),
             Some(kept) if kept.name.is_empty() => "kept preset",
-            Some(kept) => &kept.name,
+            Some(kept) => &format!("{}, as kept", kept.name),
         };
         match self.toward > 0.0 {
             true => format!("{name}, {:.0} % toward B", 100.0 * self.toward),
             false => name.into(),
         }
+    }
+
+    /// What B shows, as `B` is labeled.
+    pub fn name_b(state: &State) -> String {
+        format!(
+            "this preset, {}",
+            state.session.preset().accuracy.tier.name()
+        )
     }
 
     /// True while a report on A is still to come.
@@ -239,9 +247,10 @@ impl Compare {
             };
         };
         let own = session.next_preset();
+        let kept = kept.in_meters(&live.scene).into_owned();
         let look = match self.toward > 0.0 {
             true => kept.toward(&own, self.toward, &live.scene),
-            false => kept.in_meters(&live.scene).into_owned(),
+            false => kept,
         };
         let preset = own.with_look_of(look);
         let accuracy = preset.accuracy;
@@ -258,6 +267,7 @@ impl Compare {
             accuracy,
             scene: scene.clone(),
         }
+        .given(None)
     }
 
     /// Draws A at the size of B.

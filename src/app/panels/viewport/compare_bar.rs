@@ -32,8 +32,8 @@ const BAR: f32 = 30.0;
 const UP_TO_BAR: f32 = 106.0;
 const UP_TO_LABELS: f32 = 114.0;
 
-/// A label in the picture on each side; `name` is that of A.
-pub fn labels_ui(ui: &Ui, name: &str, sides: [Rect; 2], is_difference: bool) {
+/// A label in the picture on each side, with the names of A and B.
+pub fn labels_ui(ui: &Ui, [name, name_b]: [&str; 2], sides: [Rect; 2], is_difference: bool) {
     let first = if is_difference {
         "|A \u{2212} B|".to_owned()
     } else {
@@ -41,11 +41,7 @@ pub fn labels_ui(ui: &Ui, name: &str, sides: [Rect; 2], is_difference: bool) {
     };
     for (side, text, align) in [
         (sides[0], first, Align2::LEFT_BOTTOM),
-        (
-            sides[1],
-            "B \u{b7} this preset".to_owned(),
-            Align2::RIGHT_BOTTOM,
-        ),
+        (sides[1], format!("B \u{b7} {name_b}"), Align2::RIGHT_BOTTOM),
     ] {
         // A side that is too narrow for its label has none.
         if side.width() < 140.0 || !side.is_positive() {

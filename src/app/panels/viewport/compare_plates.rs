@@ -131,7 +131,7 @@ fn plate_b_ui(ui: &mut Ui, compare: &mut Compare, state: &State) {
         .map_or(String::new(), |explanation| explanation.key.clone());
     plate(
         ui,
-        "B · this preset",
+        &format!("B · {}", Compare::name_b(state)),
         &key,
         ((&time.0, &time.1), (&error, color, &hint)),
         |ui| {

@@ -74,7 +74,7 @@ pub fn compare_ui(
     }
     labels_ui(
         ui,
-        &compare.name(),
+        [&compare.name(), &Compare::name_b(state)],
         [side_a, side_b],
         mode == Mode::Difference,
     );

@@ -49,7 +49,7 @@ use crate::{
         },
         widgets::{panel::describe, theme},
     },
-    effects::Stack,
+    effects::{Stack, given::Given},
     preset::AccuracyRequest,
     scene::Scene,
 };
@@ -161,13 +161,25 @@ impl Viewport {
             stack,
             accuracy,
         };
+        let rect = interaction.response.rect;
+        let at = fit_aspect(self.compare.side_b(rect), whole_size(rect));
+        let pointer = interaction.response.hover_pos();
+        let requested = requested.given(pointer.map(|pointer| {
+            let [width, height] = interaction.size.map(|side| side as f32);
+            let uv = (pointer - at.min) / at.size();
+            [uv.x * width, uv.y * height]
+        }));
+        let follows = requested.stack.is_given(Given::Pointer);
         let is_held = ctx.input(|i| i.pointer.any_down());
         let is_changed = state
             .picture
             .screen
             .requested()
             .is_some_and(|before| *before != requested);
-        if interaction.is_moved || state.session.playback.playing || (is_changed && is_held) {
+        if interaction.is_moved
+            || state.session.playback.playing
+            || (is_changed && (is_held || follows))
+        {
             self.last_motion_s = now_s;
         }
         let rest_in_s = self

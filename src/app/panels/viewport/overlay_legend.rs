@@ -323,7 +323,7 @@ mod tests {
         assert_eq!(text(&overlays, &found(&[])), ["no errors: 0 of 6 pixels"]);
         assert_eq!(
             text(&overlays, &found(&[1, 4])),
-            ["wrong (snapped): 2 px", "holes: 2 px"]
+            ["wrong: 2 px", "holes: 2 px"]
         );
         assert_eq!(
             text(&only(Overlay::WrongDepth), &found(&[1])),

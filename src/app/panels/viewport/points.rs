@@ -24,7 +24,7 @@ impl PointSpace {
         Self {
             fit: session.unit_fit(),
             world_from_point: if is_of_scene {
-                view.scene_state.world_from_scene
+                view.scene_state.world_from_particles()
             } else {
                 DMat4::IDENTITY
             },

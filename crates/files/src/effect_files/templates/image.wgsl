@@ -1,7 +1,9 @@
 // Type: a soft light around what is bright.
 //
-// An image effect reads the finished picture in linear light: `image_color(x, y)`, and `image_last(x, y)` of the pass before it. Its
-// functions are passes, one after the other; the last one writes the picture. docs/effects.md has more.
+// An image effect reads the finished picture in linear light: `image_color(x,
+// y)`, and `image_last(x, y)` of the pass before it. Its functions are passes,
+// one after the other; the last one writes the picture. docs/effects.md has
+// more.
 
 struct Type {
     /// Brightness from which a pixel shines.

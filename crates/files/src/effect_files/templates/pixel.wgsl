@@ -1,7 +1,8 @@
 // Type: darkens the corners of the picture.
 //
-// A pixel effect finishes the picture, background included. `q.color` is gamma-encoded; `image_at(x, y)` gives triangle id, depth bits
-// and draw of any pixel. docs/effects.md has more.
+// A pixel effect finishes the picture, background included. `q.color` is
+// gamma-encoded; `image_at(x, y)` gives triangle id, depth bits and draw of any
+// pixel. docs/effects.md has more.
 //@ use lib/image
 
 struct Type {

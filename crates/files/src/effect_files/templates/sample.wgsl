@@ -1,7 +1,8 @@
 // Type: cuts the picture into a checkered pattern of holes.
 //
-// A sample effect says whether a sample of a triangle is drawn. Its inputs are integers, so that every adapter decides alike; compute
-// with integers wherever you can. docs/effects.md lists the members of `Sample`.
+// A sample effect says whether a sample of a triangle is drawn. Its inputs are
+// integers, so that every adapter decides alike; compute with integers wherever
+// you can. docs/effects.md lists the members of `Sample`.
 //@ use lib/sample
 
 struct Type {

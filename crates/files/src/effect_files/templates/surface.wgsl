@@ -1,7 +1,8 @@
 // Type: tints the surface where it faces away from the viewer.
 //
-// A surface effect says what color a visible sample has. `Surface` has its position, normals, depth, barycentric
-// coordinates and more; docs/effects.md lists them. Save this file, and the picture changes.
+// A surface effect says what color a visible sample has. `Surface` has its
+// position, normals, depth, barycentric coordinates and more; docs/effects.md
+// lists them. Save this file, and the picture changes.
 //@ use lib/angle
 //@ use lib/surface
 
@@ -14,7 +15,8 @@ struct Type {
     @range(0.5, 8.0, 2.0) @log falloff: f32,
     /// How often it pulses.
     @range(0.0, 4.0, 0.0) @unit(/s) pulse: f32,
-    // The time, which no one sets: what moves with it is drawn again while the clock runs.
+    // The time, which no one sets: what moves with it is drawn again while the
+    // clock runs.
     @given(seconds) time_s: f32,
 }
 
@@ -22,6 +24,7 @@ fn NAME(surface: Surface, p: Type) -> Surface {
     var s = surface;
     let rim = pow(1.0 - clamp(dot(s.normal, s.view), 0.0, 1.0), p.falloff);
     let beat = 0.5 + 0.5 * cosine_turns(p.pulse * p.time_s);
-    s.color = vec4f(mix(s.color.rgb, p.tint.rgb, rim * p.amount * beat), s.color.a);
+    let color = mix(s.color.rgb, p.tint.rgb, rim * p.amount * beat);
+    s.color = vec4f(color, s.color.a);
     return s;
 }

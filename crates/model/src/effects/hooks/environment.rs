@@ -47,11 +47,10 @@ impl<'a> Seen<'a> {
         }
     }
 
-    /// As [`Surroundings::radiance`]. `moved` moves the place in a picture
-    /// ([`Panorama::radiance`]).
-    pub fn radiance(&self, d: DVec3, alpha: f64, moved: DVec2) -> DVec3 {
+    /// As [`Surroundings::radiance`].
+    pub fn radiance(&self, d: DVec3, alpha: f64) -> DVec3 {
         match self.picture {
-            Some(picture) => picture.radiance(d, alpha, moved),
+            Some(picture) => picture.radiance(d, alpha, DVec2::ZERO),
             None => self.formula.radiance(d, alpha),
         }
     }

@@ -14,15 +14,15 @@ mod vertex;
 pub use front::{Front, Pattern};
 pub use image::{FinishFunction, ImageHook, Picture, Pixel};
 pub use passes::{
-    EMPTY_DEPTH_M, EarlierFrames, Image, ImageAt, ImagePass, Lens, PassEffect, PassFunction,
-    PassHook, PassInput, Signs,
+    EMPTY_DEPTH_M, EarlierFrames, Image, ImageAt, ImagePass, Lens, PassFunction, PassHook,
+    PassInput, Signs,
 };
 pub use sample::{Sample, SampleEffect, SampleHook, SetupFunction, TriangleSetup};
 pub use slot::{Layers, Shape, Slot};
 pub use surface::{
     Finish, Lighting, LitEffect, Surface, SurfaceEffect, SurfaceInput, Transmission,
 };
-pub use vertex::{ErrorBound, ROUNDING, Vertex, VertexEffect, VertexHook};
+pub use vertex::{ErrorBound, ROUNDING, Vertex, VertexFunction, VertexHook};
 
 use std::sync::Arc;
 

@@ -6,10 +6,7 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3, DVec4};
 
 use super::Picture;
-use crate::{
-    effects::Words,
-    scene::{panorama::Panorama, view::View},
-};
+use crate::scene::{panorama::Panorama, view::View};
 
 /// Depth of a pixel that shows nothing, meters.
 pub const EMPTY_DEPTH_M: f64 = 1e9;
@@ -232,6 +229,12 @@ impl ImageAt<'_> {
             * (1.0 + DEPTH_ERROR * self.input.signs.at(x, y))
     }
 
+    /// How many meters farther a pixel of reversed depth `depth + by` is than one of `depth`.
+    pub fn meters_apart(&self, depth: f64, by: f64) -> f64 {
+        let [here, there] = [depth, depth + by].map(|depth| self.input.lens.meters(depth));
+        (there - here) * (1.0 + DEPTH_ERROR * self.input.signs.at(self.x, self.y))
+    }
+
     /// The normal of what a pixel of the picture shows, from its depth and those of its neighbors:
     /// world space, unit length, towards the viewer's side; zero where nothing is drawn.
     pub fn normal(&self, x: i64, y: i64) -> DVec3 {
@@ -325,12 +328,6 @@ impl PassHook {
     pub fn kept(&self) -> Option<(&ImagePass, EarlierFrames)> {
         self.passes.iter().find_map(|pass| Some((pass, pass.kept?)))
     }
-}
-
-/// The f64 side of an effect of image passes.
-pub trait PassEffect: Words {
-    /// What the pass of this index writes: linear RGBA.
-    fn pass(index: usize, at: &ImageAt, params: &Self) -> DVec4;
 }
 
 #[cfg(test)]

@@ -30,15 +30,11 @@ pub struct TriangleSetup {
     pub center_error_m: f64,
     /// Position of that mean in the picture, 0 to 1; the middle where it lies behind the eye.
     pub center_screen: DVec2,
+    /// Bound of its error beside that of whole triangles, whose corners lie near the picture.
+    pub center_screen_error: f64,
 }
 
 impl TriangleSetup {
-    /// Twice the area, units of 1/256 px squared.
-    pub fn doubled_area(&self) -> u64 {
-        let [[ax, ay], [bx, by], [cx, cy]] = self.corners.map(|corner| corner.map(i64::from));
-        ((bx - ax) * (cy - ay) - (by - ay) * (cx - ax)).unsigned_abs()
-    }
-
     /// How far the center of the f32 side may be from the f64 one, in the world and in the picture.
     pub fn error_bound(&self) -> ErrorBound {
         // A few operations on numbers up to the largest corner's position, as fractions of the
@@ -50,7 +46,8 @@ impl TriangleSetup {
             .map(|at| f64::from(*at).abs())
             .fold(0.0, f64::max);
         let shortest = f64::from(self.size[0].min(self.size[1]).max(1));
-        let center_screen = 24.0 * ROUNDING * (1.0 + reach / (256.0 * shortest));
+        let center_screen =
+            self.center_screen_error + 24.0 * ROUNDING * (1.0 + reach / (256.0 * shortest));
         ErrorBound {
             center_m: self.center_error_m,
             center_screen,
@@ -91,18 +88,6 @@ impl TriangleSetup {
         let sides = [side(b, c), side(c, a), side(a, b)];
         sides == [Ordering::Greater; 3] || sides == [Ordering::Less; 3]
     }
-
-    /// Bits that every doubled area of this triangle is shifted by, so that it fits 31 bits.
-    pub fn shift(&self) -> u32 {
-        (64 - self.doubled_area().leading_zeros()).saturating_sub(31)
-    }
-
-    /// Squared length of the edge opposite corner `k`.
-    pub fn squared_length(&self, k: usize) -> u64 {
-        let ([ax, ay], [bx, by]) = (self.corners[(k + 1) % 3], self.corners[(k + 2) % 3]);
-        let (dx, dy) = (u64::from(ax.abs_diff(bx)), u64::from(ay.abs_diff(by)));
-        dx * dx + dy * dy
-    }
 }
 
 /// A covered sample before any depth test.
@@ -112,8 +97,8 @@ pub struct Sample {
     pub y: u32,
     /// Global triangle id; a clipped triangle has its parent's.
     pub triangle: u32,
-    /// Doubled area between the sample and the edge opposite each corner, shifted down by
-    /// [`TriangleSetup::shift`].
+    /// Doubled area between the sample and the edge opposite each corner, all shifted down until
+    /// that of the triangle fits 31 bits.
     pub areas: [u32; 3],
     /// What the effect computed for the triangle: [`SampleEffect::sample_setup`].
     pub setup: [u32; 4],

@@ -4,8 +4,6 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 
-use crate::effects::Words;
-
 /// A corner of a triangle before it is projected; a vertex effect moves it and passes it on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Vertex {
@@ -76,20 +74,6 @@ pub struct VertexHook {
     pub moved: Arc<VertexFunction>,
     pub error_bound: Arc<VertexBoundFunction>,
     pub max_displacement_m: Arc<DisplacementFunction>,
-}
-
-/// The f64 side of an effect on the vertex hook.
-pub trait VertexEffect: Words {
-    /// It reads `flat_normal`, `center`, `arm`, `center_screen` or `triangle`.
-    const NEEDS_TRIANGLE: bool;
-
-    /// Changes `offset`, `normal` and `cell_px` alone.
-    fn moved(vertex: Vertex, params: &Self) -> Vertex;
-
-    /// Error bound of what the f32 side makes of `vertex` under any rounding, order and fusion that
-    /// WGSL allows, given the bound of its input. Parameters that move nothing add nothing.
-    fn error_bound(vertex: &Vertex, error_bound: ErrorBound, params: &Self) -> ErrorBound;
-
-    /// The farthest that it moves a vertex of a model of this radius, meters.
-    fn max_displacement_m(radius_m: f64, params: &Self) -> f64;
+    /// What the text of a file does before it is held to its reach. None: nothing holds it.
+    pub unheld: Option<Arc<VertexFunction>>,
 }

@@ -14,12 +14,14 @@ use crate::shaders::{Library, sections};
 type Declared = BTreeMap<String, String>;
 
 /// The declarations in the file `stem` of effects, and in all that it uses, that the functions
-/// `roots` reach. `constants` are those of its choices.
-pub fn assembled(stem: &str, roots: &[&str], constants: &str) -> String {
+/// `roots` reach. `constants` are those of its choices; with a picture of what surrounds the scene,
+/// sections called `picture` are taken.
+pub fn assembled(stem: &str, roots: &[&str], constants: &str, has_picture: bool) -> String {
     let mut declared = Declared::new();
     declare(constants, &mut declared);
     declare_file(
         &format!("effects/{stem}"),
+        has_picture,
         &mut BTreeSet::new(),
         &mut declared,
     );
@@ -36,24 +38,36 @@ pub fn assembled(stem: &str, roots: &[&str], constants: &str) -> String {
 }
 
 /// Adds what a file declares, and what those that it uses do. Of a file with variants the first one
-/// counts.
-fn declare_file(name: &str, known: &mut BTreeSet<String>, declared: &mut Declared) {
+/// counts, or that of pictures.
+fn declare_file(
+    name: &str,
+    has_picture: bool,
+    known: &mut BTreeSet<String>,
+    declared: &mut Declared,
+) {
     let found = Library::Embedded.text(name);
     let Some(file) = found.filter(|_| known.insert(name.to_owned())) else {
         return;
     };
-    let count = if name.starts_with("variants/") { 2 } else { 1 };
-    for (_, range) in sections(&file).into_iter().take(count) {
-        let text = &file[range];
+    let parts = sections(&file);
+    let variant = match name.starts_with("variants/") {
+        true => parts
+            .iter()
+            .find(|(name, _)| has_picture && *name == "picture")
+            .or(parts.get(1)),
+        false => None,
+    };
+    for (_, range) in parts.first().into_iter().chain(variant) {
+        let text = &file[range.clone()];
         declare(&without_attributes(text), declared);
         let used = text
             .lines()
             .filter_map(|line| line.strip_prefix("//@ use "));
-        used.for_each(|used| declare_file(used.trim(), known, declared));
+        used.for_each(|used| declare_file(used.trim(), has_picture, known, declared));
     }
     if name == "lib/surface" {
         // The evaluator gives every surface its finish, as kernels do whose effects read it.
-        declare_file("lib/finish", known, declared);
+        declare_file("lib/finish", has_picture, known, declared);
         if let Some(surface) = declared.get_mut("Surface") {
             *surface = surface.replace("\n}", "\n    finish: Finish,\n}");
         }

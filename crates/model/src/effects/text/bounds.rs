@@ -63,6 +63,33 @@ struct Level {
     branches: usize,
 }
 
+/// The last token in the line of the last head of a block behind which no block follows.
+fn unopened<'a, 't>(text: &Text<'_>, tokens: &'a [Token<'t>]) -> Option<&'a Token<'t>> {
+    let heads = [
+        "fn", "struct", "if", "else", "for", "while", "loop", "switch",
+    ];
+    let is_head = |at: usize| heads.contains(&tokens[at].text);
+    let ends_line = |at: &usize| match tokens.get(at + 1) {
+        Some(next) => text.text[tokens[*at].end()..next.offset].contains('\n'),
+        None => true,
+    };
+    let found = (0..tokens.len())
+        .rev()
+        .filter(|&head| is_head(head))
+        .find(|&head| {
+            let mut at = head + 1;
+            while at < tokens.len() && !is_head(at) && !["{", "}", ";"].contains(&tokens[at].text) {
+                at = match tokens[at].text {
+                    "(" => closing(tokens, at) + 1,
+                    _ => at + 1,
+                };
+            }
+            let behind = tokens.get(at).map_or("", |token| token.text);
+            behind != "{" && (tokens[head].text, behind) != ("else", "if")
+        });
+    (found?..tokens.len()).find(ends_line).map(|at| &tokens[at])
+}
+
 fn check_brackets(text: &Text<'_>, tokens: &[Token<'_>]) -> Result<(), EffectError> {
     let mut levels = vec![Level::default()];
     let mut before = "";
@@ -91,7 +118,14 @@ fn check_brackets(text: &Text<'_>, tokens: &[Token<'_>]) -> Result<(), EffectErr
             ")" | "]" | "}" => {
                 let opened = levels.pop().map_or("", |level| tokens[level.open].text);
                 if levels.is_empty() {
-                    return error(format!("{} closes nothing; remove it", token.text));
+                    return match unopened(text, &tokens[..index]).filter(|_| token.text == "}") {
+                        Some(last) => Err(text.error(
+                            last.end() - 1,
+                            1,
+                            "the block that begins here has no {; write it behind this",
+                        )),
+                        None => error(format!("{} closes nothing; remove it", token.text)),
+                    };
                 }
                 let expected = match opened {
                     "(" => ")",

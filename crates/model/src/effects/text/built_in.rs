@@ -5,13 +5,13 @@
 use std::{
     borrow::Cow,
     fmt::Write,
-    sync::{Arc, OnceLock},
+    sync::{Arc, LazyLock, OnceLock},
 };
 
 use super::{
     assembled::assembled,
     attributes,
-    declaration::{self, Author, Declaration, OF_FUNCTIONS},
+    declaration::{self, Author, Declaration, OF_FUNCTIONS, REACH},
     error::{EffectError, Text},
     picture_twin,
     tokens::{Token, closing, tokens},
@@ -59,41 +59,63 @@ pub fn built_in(name: &str) -> Result<Effect, EffectError> {
     Ok(effect)
 }
 
+/// The file of an effect that shows what surrounds the scene uses this one.
+const SURROUNDINGS: &str = "variants/surroundings";
+
 /// The hooks that the functions of a file are on.
 fn hooks(effect: &Effect, declaration: &Declaration<'_>) -> Hooks {
     let functions = &declaration.hooks;
-    let text = |names: Vec<String>| Arc::new(LazyText::new(effect, names));
-    let mut hooks = Hooks::default();
+    let text = |names: Vec<String>| Arc::new(LazyText::new(effect, names, false));
+    let mut hooks = Hooks {
+        shows_surroundings: declaration.uses.iter().any(|used| used == SURROUNDINGS),
+        ..Hooks::default()
+    };
     if let Some(name) = &functions.vertex {
         let needs_triangle = reads_triangle(&declaration.tokens);
-        let (text, known) = (text(vec![name.clone()]), OnceLock::new());
-        let hook = Arc::new(move || -> VertexHook {
-            let make = || twin::vertex(text.exact(0), text.rounded(0), needs_triangle);
-            known.get_or_init(make).clone()
-        });
-        let (moved, error_bound, reach) = (hook.clone(), hook.clone(), hook);
+        let reach = declaration.reach.clone();
+        let names = [Some(name), reach.as_ref().map(|reach| &reach.name)];
+        let text = text(names.into_iter().flatten().cloned().collect());
+        let hook: Arc<LazyLock<VertexHook, _>> = Arc::new(LazyLock::new(move || {
+            let reach = reach.map(|reach| (text.exact(1), reach.takes_radius));
+            twin::vertex(text.exact(0), text.rounded(0), needs_triangle, reach)
+        }));
+        let (moved, error_bound) = (hook.clone(), hook.clone());
         hooks.vertex = Some(VertexHook {
             needs_triangle,
-            moved: Arc::new(move |v, words| (moved().moved)(v, words)),
+            moved: Arc::new(move |v, words| (moved.moved)(v, words)),
             error_bound: Arc::new(move |v, bound, words| {
-                (error_bound().error_bound)(v, bound, words)
+                (error_bound.error_bound)(v, bound, words)
             }),
             max_displacement_m: Arc::new(move |radius_m, words| {
-                (reach().max_displacement_m)(radius_m, words)
+                (hook.max_displacement_m)(radius_m, words)
             }),
+            unheld: None,
         });
     }
     if let Some(name) = &functions.sample {
-        let (text, known) = (text(vec![name.clone()]), OnceLock::new());
+        // Of integers alone: a setup that takes floats has a side in Rust.
+        let setup = format!("{}_sample_setup", effect.name);
+        let has_setup = declaration.declared.contains(&setup);
+        let names = [Some(name.clone()), has_setup.then_some(setup)];
+        let text = text(names.into_iter().flatten().collect());
+        let hook: Arc<LazyLock<SampleHook, _>> = Arc::new(LazyLock::new(move || SampleHook {
+            sample_setup: match has_setup {
+                true => twin::sample_setup(text.exact(1)),
+                false => Arc::new(|_, _, _| [0; 4]),
+            },
+            ..twin::sample(text.exact(0))
+        }));
+        let tested = hook.clone();
         hooks.sample = Some(SampleHook {
-            has_setup: false,
+            has_setup,
             error_bound: Arc::new(|_, _| 0.0),
             is_from_floats: Arc::new(|_| false),
-            sample_setup: Arc::new(|_, _, _| [0; 4]),
+            sample_setup: Arc::new(move |setup, words, first| {
+                (hook.sample_setup)(setup, words, first)
+            }),
             is_drawn: Arc::new(
                 move |samples: &[Sample], words: &[u32], drawn: &mut [bool]| {
-                    let hook: &SampleHook = known.get_or_init(|| twin::sample(text.exact(0)));
-                    (hook.is_drawn)(samples, words, drawn)
+                    (tested.is_drawn)(samples, words, drawn)
                 },
             ),
         });
@@ -128,14 +150,23 @@ fn hooks(effect: &Effect, declaration: &Declaration<'_>) -> Hooks {
             .iter()
             .map(|pass| pass.name.clone())
             .collect();
-        let (text, known, count) = (text(names), OnceLock::new(), declaration.passes.len());
-        let run = move |index: usize, pixels: &[ImageAt<'_>], words: &[u32]| {
-            let hook: &PassHook = known.get_or_init(|| {
+        // Without a picture of what surrounds the scene, and with one.
+        let known = [false, true].map(|has_picture| {
+            let (text, count) = (
+                LazyText::new(effect, names.clone(), has_picture),
+                names.len(),
+            );
+            LazyLock::new(move || -> PassHook {
                 let [exact, rounded] = [LazyText::exact, LazyText::rounded]
                     .map(|functions| (0..count).map(|pass| functions(&text, pass)).collect());
                 picture_twin::passes(Vec::new(), exact, rounded)
-            });
-            (hook.run)(index, pixels, words)
+            })
+        });
+        let shows = hooks.shows_surroundings;
+        let run = move |index: usize, pixels: &[ImageAt<'_>], words: &[u32]| {
+            let has = |at: &ImageAt<'_>| at.input.panorama.is_some();
+            let has_picture = shows && pixels.first().is_some_and(has);
+            (known[usize::from(has_picture)].run)(index, pixels, words)
         };
         // A pass of a built-in effect is called by what follows the effect's name.
         let named = |pass: &ImagePass| {
@@ -160,15 +191,18 @@ struct LazyText {
     /// For its members.
     effect: Effect,
     names: Vec<String>,
+    /// It shows a picture of what surrounds the scene.
+    has_picture: bool,
     /// Each function in f64 and in f32.
     functions: OnceLock<Vec<[Function; 2]>>,
 }
 
 impl LazyText {
-    fn new(effect: &Effect, names: Vec<String>) -> Self {
+    fn new(effect: &Effect, names: Vec<String>, has_picture: bool) -> Self {
         Self {
             effect: effect.clone(),
             names,
+            has_picture,
             functions: OnceLock::new(),
         }
     }
@@ -176,7 +210,8 @@ impl LazyText {
     fn functions(&self) -> &[[Function; 2]] {
         self.functions.get_or_init(|| {
             let roots: Vec<&str> = self.names.iter().map(String::as_str).collect();
-            let text = assembled(&self.effect.name, &roots, &constants(&self.effect));
+            let constants = constants(&self.effect);
+            let text = assembled(&self.effect.name, &roots, &constants, self.has_picture);
             let module = naga::front::wgsl::parse_str(&text).unwrap_or_else(|error| {
                 panic!("{}: {}", self.effect.name, error.emit_to_string(&text))
             });
@@ -251,6 +286,15 @@ fn surface_inputs(tokens: &[Token<'_>]) -> Vec<SurfaceInput> {
 /// A text of WGSL with spaces in place of what only the lab knows: the attributes of parameters and
 /// functions.
 pub fn without_attributes(text: &str) -> Cow<'_, str> {
+    blanked(text, false)
+}
+
+/// The same without the functions that kernels do not call, those behind `@reach`.
+pub fn for_kernels(text: &str) -> Cow<'_, str> {
+    blanked(text, true)
+}
+
+fn blanked(text: &str, is_for_kernels: bool) -> Cow<'_, str> {
     let tokens = tokens(text);
     let is_ours = |name: &str| attributes::NAMES.contains(&name) || OF_FUNCTIONS.contains(&name);
     let mut blanked: Option<Vec<u8>> = None;
@@ -260,6 +304,10 @@ pub fn without_attributes(text: &str) -> Cow<'_, str> {
         }
         let last = match tokens.get(at + 2) {
             Some(open) if open.text == "(" => tokens[closing(&tokens, at + 2)],
+            _ if is_for_kernels && pair[1].text == REACH => {
+                let body = (at..tokens.len()).find(|&index| tokens[index].text == "{");
+                body.map_or(pair[1], |body| tokens[closing(&tokens, body)])
+            }
             _ => pair[1],
         };
         let bytes = blanked.get_or_insert_with(|| text.as_bytes().to_vec());

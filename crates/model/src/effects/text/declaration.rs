@@ -6,7 +6,7 @@ use std::{collections::BTreeSet, ops::Range};
 use super::{
     attributes, bounds,
     error::{EffectError, Text},
-    functions::{OfPass, image_passes, is_smooth, kept_frames, pass_scale},
+    functions::{OfPass, Reach, image_passes, is_smooth, kept_frames, pass_scale, reach},
     parameters::{self, Parameters},
     tokens::{Token, closing, tokens},
     words::{self, LIBRARY},
@@ -33,7 +33,10 @@ const OF_PIXELS: [&str; 2] = ["image_background", "image_previous"];
 const OF_KEPT: [&str; 2] = ["image_kept", "image_kept_at"];
 
 /// Attributes that stand before functions.
-pub const OF_FUNCTIONS: [&str; 3] = ["pass", "kept", "smooth"];
+pub const OF_FUNCTIONS: [&str; 4] = ["pass", "kept", "smooth", REACH];
+
+/// The attribute of the function that says how far a vertex moves.
+pub const REACH: &str = "reach";
 
 /// What an effect file says.
 #[derive(Debug)]
@@ -47,6 +50,8 @@ pub struct Declaration<'a> {
     pub hooks: HookFunctions,
     /// The passes over the finished picture, in order.
     pub passes: Vec<ImagePass>,
+    /// How far the vertex function moves a vertex at most; none: by the sum of the lengths.
+    pub reach: Option<Reach>,
     /// Names declared at module scope, and the constants of choices.
     pub declared: BTreeSet<String>,
     /// The color of its surface and pixel functions has no steps.
@@ -67,6 +72,8 @@ pub struct Function<'a> {
     pub of_pass: OfPass,
     /// `@smooth` stands before it: its color has no steps.
     pub is_smooth: bool,
+    /// `@reach` stands before it: it says how far a vertex moves.
+    pub is_reach: bool,
 }
 
 /// Whose effect a text is.
@@ -105,6 +112,7 @@ pub fn read<'a>(
         (found, _) => found?,
     };
     let is_smooth = is_smooth(text, &scope.functions, &hooks)?;
+    let reach = reach(text, &scope.functions, &hooks, struct_name.text, author)?;
     let mut structs = scope.structs.iter();
     let Some((_, open)) = structs.find(|(name, _)| name.text == struct_name.text) else {
         let message = format!(
@@ -125,6 +133,7 @@ pub fn read<'a>(
         parameters,
         hooks,
         passes,
+        reach,
         is_smooth,
         declared: BTreeSet::new(),
         uses,
@@ -170,7 +179,7 @@ struct Scope<'a> {
 
 fn module_scope<'a>(text: &Text<'a>, tokens: &[Token<'a>]) -> Result<Scope<'a>, EffectError> {
     let mut scope = Scope::default();
-    let (mut of_pass, mut is_smooth) = (OfPass::default(), false);
+    let (mut of_pass, mut is_smooth, mut is_reach) = (OfPass::default(), false, false);
     let mut at = 0;
     while at < tokens.len() {
         let token = tokens[at];
@@ -211,6 +220,7 @@ fn module_scope<'a>(text: &Text<'a>, tokens: &[Token<'a>]) -> Result<Scope<'a>, 
                 scope.functions.push(Function {
                     of_pass: std::mem::take(&mut of_pass),
                     is_smooth: std::mem::take(&mut is_smooth),
+                    is_reach: std::mem::take(&mut is_reach),
                     ..function(text, tokens, at, name, body)
                 });
                 at = closing(tokens, body) + 1;
@@ -230,12 +240,14 @@ fn module_scope<'a>(text: &Text<'a>, tokens: &[Token<'a>]) -> Result<Scope<'a>, 
                 match attribute.name {
                     "pass" => of_pass.scale = Some(pass_scale(text, &attribute)?),
                     "smooth" => is_smooth = true,
+                    REACH => is_reach = true,
                     _ => of_pass.kept = Some(kept_frames(text, &attribute)?),
                 }
                 let follows = tokens.get(next).map_or("", |token| token.text);
                 if !["fn", "@"].contains(&follows) {
                     let message = match attribute.name {
                         "smooth" => "@smooth stands before the fn of a hook".into(),
+                        REACH => "@reach stands before the fn that says how far a vertex moves".into(),
                         name => format!("@{name} stands before the fn of a pass"),
                     };
                     return Err(attribute.error(text, message));
@@ -407,6 +419,7 @@ fn function<'a>(
         result,
         of_pass: OfPass::default(),
         is_smooth: false,
+        is_reach: false,
     }
 }
 

@@ -1,8 +1,8 @@
-//! What attributes before functions say: `@pass`, `@kept` and `@smooth`.
+//! What attributes before functions say: `@pass`, `@kept`, `@smooth` and `@reach`.
 
 use super::{
     attributes::Attribute,
-    declaration::Function,
+    declaration::{Author, Function},
     error::{EffectError, Text},
 };
 use crate::effects::{
@@ -46,6 +46,60 @@ pub fn is_smooth(
     }
     let mut hooks = functions.iter().filter(|function| is_hook(function));
     Ok(hooks.all(|function| function.is_smooth))
+}
+
+/// The function that says how far a vertex moves at most, meters.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Reach {
+    pub name: String,
+    /// Its first argument is the radius of the model, meters, which the lab's own effects read.
+    pub takes_radius: bool,
+}
+
+/// The function behind `@reach`.
+pub fn reach(
+    text: &Text<'_>,
+    functions: &[Function<'_>],
+    hooks: &HookFunctions,
+    parameters: &str,
+    author: Author,
+) -> Result<Option<Reach>, EffectError> {
+    let mut marked = functions.iter().filter(|function| function.is_reach);
+    let Some(function) = marked.next() else {
+        return Ok(None);
+    };
+    let name = function.name.text;
+    if let Some(other) = marked.next() {
+        let message = format!(
+            "{name} and {} both stand behind @reach, which one function does; remove one @reach",
+            other.name.text
+        );
+        return Err(text.at(other.name, message));
+    }
+    if hooks.vertex.is_none() {
+        let message = format!(
+            "@reach stands before {name}, and no function of this file moves a Vertex; remove @reach"
+        );
+        return Err(text.at(function.name, message));
+    }
+    let takes_radius = match &function.parameters[..] {
+        [p] if p == parameters => false,
+        [radius, p] if radius == "f32" && p == parameters && author == Author::Lab => true,
+        _ => {
+            let message = format!(
+                "@reach stands before a function of the parameters alone that returns meters; write fn {name}(p: {parameters}) -> f32"
+            );
+            return Err(text.at(function.name, message));
+        }
+    };
+    if function.result != "f32" {
+        let message = format!("{name} says how far a vertex moves, in meters; write -> f32");
+        return Err(text.at(function.name, message));
+    }
+    Ok(Some(Reach {
+        name: name.to_owned(),
+        takes_radius,
+    }))
 }
 
 /// Pixels of the picture for one of a pass, along a side, as `@pass` says.

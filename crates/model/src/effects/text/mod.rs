@@ -15,4 +15,4 @@ pub mod tokens;
 pub mod twin;
 pub mod words;
 
-pub use built_in::{built_in, reads_triangle, without_attributes};
+pub use built_in::{built_in, for_kernels, reads_triangle};

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use glam::{DVec2, DVec4};
+use glam::{DVec2, DVec3, DVec4};
 
 use super::twin::{Function, each_side, perturbed, strength};
 use crate::{
@@ -80,6 +80,19 @@ pub fn image(exact: Function, rounded: Function, reads_previous: bool) -> ImageH
     }
 }
 
+/// How far a direction in f32 may be off its place in a picture of surroundings, whose side is 1.
+const PLACE_ERROR: f64 = 1.0 / (1 << 20) as f64;
+
+/// That, along both diagonals, where the picture is drawn at the edge of what f32 may do.
+fn moved_place(at: &ImageAt<'_>) -> DVec2 {
+    let along = match at.step_offset == 0.0 {
+        true => 0.0,
+        false => at.step_offset.signum(),
+    };
+    let across = at.input.signs.at(at.x, at.y);
+    DVec2::new(along + across, along - across) * PLACE_ERROR
+}
+
 /// Answers what a pass asks of the picture and of the pass before it.
 struct PassHost<'a>(&'a [ImageAt<'a>]);
 
@@ -117,6 +130,22 @@ impl Host for PassHost<'_> {
             }
             14 => at.kept(pixel()[0], pixel()[1]),
             15 => at.kept_at(place()),
+            16 | 17 => {
+                let toward = DVec3::from([0, 1, 2].map(|axis| arguments[axis].to_f64()));
+                let light = at
+                    .input
+                    .panorama
+                    .map_or(DVec3::ZERO, |panorama| match index {
+                        16 => panorama.irradiance(toward),
+                        _ => panorama.radiance(toward, arguments[3].to_f64(), moved_place(at)),
+                    });
+                result.copy_from_slice(&light.to_array().map(Word::from_f64));
+                return;
+            }
+            18 => {
+                result[0] = Word::from_f64(at.meters_apart(place().x, place().y));
+                return;
+            }
             _ => {
                 return PictureHost(at.input.picture, &[]).external(index, lane, arguments, result);
             }

@@ -16,7 +16,7 @@ use crate::{
         Effect,
         hooks::{
             ErrorBound, ROUNDING, Sample, SampleHook, SetupFunction, Surface, SurfaceFunction,
-            TriangleSetup, Vertex, VertexHook,
+            TriangleSetup, Vertex, VertexFunction, VertexHook,
         },
         image_file::ImageFile,
     },
@@ -25,11 +25,15 @@ use crate::{
     params::{Field, ValueType, WgslType},
 };
 
+mod vertex;
+pub use vertex::{moving, vertex};
+
 /// Instructions of one call. The loops of an effect end long before.
 const MAX_STEPS: u64 = 100_000_000;
 /// Functions of the library that read more than their arguments: of `lib/image`,
-/// `lib/image_pass`, `lib/image_direction` and `lib/image_kept`, then of `lib/image_file`.
-pub const EXTERNALS: [&str; 18] = [
+/// `lib/image_pass`, `lib/image_direction`, `lib/image_kept` and `lib/panorama`, then of
+/// `lib/image_file`.
+pub const EXTERNALS: [&str; 21] = [
     "image_has",
     "image_at",
     "image_background",
@@ -46,14 +50,20 @@ pub const EXTERNALS: [&str; 18] = [
     "image_direction",
     "image_kept",
     "image_kept_at",
+    "panorama_irradiance",
+    "panorama_radiance",
+    "image_meters_apart",
     "image_file_size",
     "image_file_texel",
 ];
 /// Index of the first function of `lib/image_file`.
-const IMAGE_FILES: usize = 16;
+const IMAGE_FILES: usize = 19;
 /// How much the inputs of a color may be off on the f32 side, relative to the largest component of
-/// each.
-const INPUT_ERROR: f64 = 1.0 / (1 << 17) as f64;
+/// each: as a fraction of the step's offset.
+const INPUT_ERROR: f64 = 0.25;
+/// The farthest that a function behind `@reach` may let a vertex move; beyond that, and where it
+/// gives no number, nothing moves.
+pub const MOST_REACH_M: f64 = 1e12;
 /// Bytes of registers that a thread keeps, beside those of the program that it runs.
 const MAX_BYTES: usize = 16 << 20;
 
@@ -164,6 +174,38 @@ impl Function {
             each.filter(|(lane, _)| ended >> lane & 1 == 0)
                 .for_each(|(_, sample)| left(sample));
         });
+    }
+}
+
+impl Function {
+    /// What a function behind `@reach` says with these parameter words, meters; no less than 0.
+    fn reach_m(&self, takes_radius: bool, radius_m: f64, words: &[u32]) -> f64 {
+        // A function that returns its first argument leaves it where it is.
+        let first = match takes_radius {
+            true => radius_m,
+            false => f32::from_bits(words[0]).into(),
+        };
+        let mut reach = [(radius_m, first)];
+        self.run(
+            &mut reach,
+            words,
+            &mut NoHost,
+            |inputs| {
+                if takes_radius {
+                    inputs.floats(|(radius_m, _)| [*radius_m]);
+                }
+            },
+            |outputs| {
+                outputs.float(|(_, reach_m)| reach_m);
+            },
+            |_| {},
+        );
+        let [(_, reach_m)] = reach;
+        if (0.0..=MOST_REACH_M).contains(&reach_m) {
+            reach_m
+        } else {
+            0.0
+        }
     }
 }
 
@@ -283,11 +325,7 @@ pub(super) fn perturbed<const N: usize>(values: [f64; N], index: u32, strength: 
 
 /// How much inputs are moved to a side of a step.
 pub(super) fn strength(step_offset: f64) -> f64 {
-    if step_offset == 0.0 {
-        0.0
-    } else {
-        INPUT_ERROR * step_offset.signum()
-    }
+    INPUT_ERROR * step_offset
 }
 
 /// Hands samples to `run` that are evaluated alike: in f32, as `rounded`, to one side of a step, else
@@ -471,117 +509,4 @@ pub fn sample_setup(function: Function) -> Arc<SetupFunction> {
         );
         setup.1
     })
-}
-
-/// A corner with its members moved by up to `bound` times `strength`, by a hash of `turn`.
-fn moved_within(v: &Vertex, bound: &ErrorBound, turn: u32) -> Vertex {
-    let away = |values: DVec3, index: u32, by: f64| {
-        let sign = |component: u32| {
-            if hash(turn * 64 + index * 4 + component) & 1 == 0 {
-                by
-            } else {
-                -by
-            }
-        };
-        values + DVec3::new(sign(0), sign(1), sign(2))
-    };
-    let screen = away(v.center_screen.extend(0.0), 6, bound.center_screen);
-    Vertex {
-        position: away(v.position, 0, bound.position_m),
-        offset: away(v.offset, 1, bound.offset_m),
-        normal: away(v.normal, 2, bound.normal),
-        flat_normal: away(v.flat_normal, 3, bound.flat_normal),
-        center: away(v.center, 4, bound.center_m),
-        arm: away(v.arm, 5, bound.arm_m),
-        center_screen: screen.truncate(),
-        triangle: v.triangle,
-        cell_px: v.cell_px,
-    }
-}
-
-/// The vertex hook: `double` in f64, `single` with every operation rounded to f32.
-pub fn vertex(double: Function, single: Function, needs_triangle: bool) -> VertexHook {
-    let (moving, fields) = (double.clone(), double.members.clone());
-    let moved = move |vertices: &mut [Vertex], words: &[u32]| move_all(&moving, vertices, words);
-    let limit = move |_: f64, words: &[u32]| {
-        lengths(&fields)
-            .map(|field| field.get(words)[0].abs())
-            .sum()
-    };
-    // The text is evaluated at inputs at the ends of their bounds and in f32. Twice the largest
-    // difference is the bound.
-    let error_bound = move |v: &Vertex, bound: ErrorBound, words: &[u32]| {
-        let rounded = Vertex {
-            position: v.position.as_vec3().as_dvec3(),
-            offset: v.offset.as_vec3().as_dvec3(),
-            normal: v.normal.as_vec3().as_dvec3(),
-            flat_normal: v.flat_normal.as_vec3().as_dvec3(),
-            center: v.center.as_vec3().as_dvec3(),
-            arm: v.arm.as_vec3().as_dvec3(),
-            center_screen: v.center_screen.as_vec2().as_dvec2(),
-            triangle: v.triangle,
-            cell_px: v.cell_px,
-        };
-        let mut exact: [Vertex; 7] = std::array::from_fn(|turn| match turn {
-            0 => *v,
-            _ => moved_within(v, &bound, turn as u32 - 1),
-        });
-        move_all(&double, &mut exact, words);
-        let mut rounded = [rounded];
-        move_all(&single, &mut rounded, words);
-        let [exact, others @ ..] = exact;
-        let (mut offset_m, mut normal) = (0.0_f64, 0.0_f64);
-        for other in others.into_iter().chain(rounded) {
-            offset_m = offset_m.max((other.offset - exact.offset).abs().max_element());
-            normal = normal.max((other.normal - exact.normal).abs().max_element());
-        }
-        let scale = v.position.abs().max_element() + exact.offset.abs().max_element();
-        let (offset_m, normal) = (
-            2.0 * offset_m + 16.0 * ROUNDING * scale,
-            2.0 * normal + 16.0 * ROUNDING,
-        );
-        ErrorBound {
-            offset_m,
-            along_m: DVec3::ZERO,
-            normal,
-            ..bound
-        }
-    };
-    VertexHook {
-        needs_triangle,
-        moved: Arc::new(moved),
-        error_bound: Arc::new(error_bound),
-        max_displacement_m: Arc::new(limit),
-    }
-}
-
-fn move_all(function: &Function, vertices: &mut [Vertex], words: &[u32]) {
-    for together in vertices.chunks_mut(LANES) {
-        function.run(
-            together,
-            words,
-            &mut NoHost,
-            |inputs| {
-                inputs
-                    .floats(|v| v.position.to_array())
-                    .floats(|v| v.offset.to_array())
-                    .floats(|v| v.normal.to_array())
-                    .floats(|v| v.flat_normal.to_array())
-                    .floats(|v| v.center.to_array())
-                    .floats(|v| v.arm.to_array())
-                    .floats(|v| v.center_screen.to_array())
-                    .whole(|v| [v.triangle, v.cell_px]);
-            },
-            |outputs| {
-                // What lies between is only read.
-                outputs
-                    .skip(3)
-                    .floats(|v| v.offset.as_mut())
-                    .floats(|v| v.normal.as_mut())
-                    .skip(12)
-                    .whole(|v| &mut v.cell_px);
-            },
-            |v| v.offset = DVec3::NAN,
-        );
-    }
 }

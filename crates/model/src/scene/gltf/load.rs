@@ -1,6 +1,6 @@
 //! Loads a model: follows its parts in order and assembles the scene.
 
-use std::{collections::BTreeSet, f64::consts::FRAC_1_PI};
+use std::collections::BTreeSet;
 
 use super::{
     buffers::Buffers,
@@ -16,12 +16,7 @@ use super::{
     source::{Bytes, Source},
 };
 use crate::scene::{
-    camera::MIN_NEAR_M,
-    memory::MemoryBudget,
-    model::Scene,
-    pose,
-    punctual::{LightKind, SceneLight},
-    rig::Rig,
+    camera::MIN_NEAR_M, memory::MemoryBudget, model::Scene, pose, punctual::dimmed, rig::Rig,
 };
 
 /// Loads a model from memory, within the least memory budget. `read` supplies the files that it
@@ -155,34 +150,15 @@ fn read_model(
     let moves = !scene.rig.is_empty();
     scene.cameras = tree.cameras(document, &scene.bounds(), moves, notes);
     scene.lights = tree.lights(document, moves, notes);
-    if let Some(times) = glare(&scene) {
+    if let Some(times) = scene.glare() {
+        let dimmed = dimmed(times);
         notes.add(|| {
             format!(
-                "its lights are some {times:.0e} times as strong as what a picture holds; studio.lights = {:.0e} dims them",
-                1.0 / times
+                "its lights are some {times:.0e} times as strong as what a picture holds; studio.lights = {dimmed:e} dims them, as in the plain look"
             )
         });
     }
     Ok(scene)
-}
-
-/// How strong the strongest light is on a white matt scene, where that is far beyond 1: files in
-/// photometric units are meant for a camera's exposure.
-fn glare(scene: &Scene) -> Option<f64> {
-    const MOST: f64 = 30.0;
-    let bounds = scene.bounds();
-    let strength = |light: &SceneLight| {
-        let place = light.world_from_light.w_axis.truncate();
-        let distance = match light.kind {
-            LightKind::Directional => 1.0,
-            LightKind::Point | LightKind::Spot { .. } => {
-                (place - bounds.center()).length().max(bounds.radius())
-            }
-        };
-        light.light.into_iter().fold(0.0, f64::max) * FRAC_1_PI / (distance * distance)
-    };
-    let strongest = scene.lights.iter().map(strength).fold(0.0, f64::max);
-    (strongest > MOST && strongest.is_finite()).then_some(strongest)
 }
 
 /// Messages about features of the file that are not drawn; each is built when it is asked for.

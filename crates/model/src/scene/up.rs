@@ -1,0 +1,249 @@
+//! The axis of a file that is up, and the turn that makes it +y, which is up in every scene.
+
+use glam::{DMat4, DVec4};
+
+use super::{
+    bounds::Bounds,
+    framing::FramingPoints,
+    model::{Scene, SceneCamera},
+};
+
+/// The axis of a file that is up.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum UpAxis {
+    /// As glTF has it.
+    #[default]
+    Y,
+    Z,
+    X,
+    NegY,
+    NegZ,
+    NegX,
+    /// Found when the scene is loaded: as its format says, or guessed where that says nothing.
+    Auto,
+}
+
+impl UpAxis {
+    pub const ALL: [Self; 7] = [
+        Self::Y,
+        Self::Z,
+        Self::X,
+        Self::NegY,
+        Self::NegZ,
+        Self::NegX,
+        Self::Auto,
+    ];
+    /// The words in files.
+    pub const WORDS: &[&str] = &["y", "z", "x", "-y", "-z", "-x", "auto"];
+
+    /// The word in files.
+    pub const fn word(self) -> &'static str {
+        Self::WORDS[self as usize]
+    }
+
+    /// This axis, or `other` where none is named.
+    #[must_use]
+    pub const fn or(self, other: Self) -> Self {
+        if matches!(self, Self::Auto) {
+            other
+        } else {
+            self
+        }
+    }
+
+    /// The turn that makes this axis +y, without rounding.
+    pub const fn turn(self) -> DMat4 {
+        let [x, y, z] = match self {
+            Self::Y | Self::Auto => [DVec4::X, DVec4::Y, DVec4::Z],
+            Self::Z => [DVec4::X, DVec4::NEG_Z, DVec4::Y],
+            Self::X => [DVec4::Y, DVec4::NEG_X, DVec4::Z],
+            Self::NegY => [DVec4::NEG_X, DVec4::NEG_Y, DVec4::Z],
+            Self::NegZ => [DVec4::X, DVec4::Z, DVec4::NEG_Y],
+            Self::NegX => [DVec4::NEG_Y, DVec4::X, DVec4::Z],
+        };
+        DMat4::from_cols(x, y, z, DVec4::W)
+    }
+
+    /// The axis that is up in a file of meshes, which says nothing of it. `bounds` is its box,
+    /// `names` are those of the file and its parts, and `usual` is the axis of the format.
+    ///
+    /// The first of these that holds decides: a name says `y-up` or `z-up`; the box lies far away along
+    /// two axes and not along the third, as coordinates of a map do; the model stands on the plane
+    /// through the origin and rises above it by at least [`RISES`] of its size. Else it is `usual`.
+    pub fn guessed<'a>(
+        bounds: &Bounds,
+        names: impl IntoIterator<Item = &'a str>,
+        usual: Self,
+    ) -> Self {
+        for name in names {
+            let name = name.to_lowercase();
+            let words: Vec<&str> = name.split(|c: char| !c.is_alphanumeric()).collect();
+            let says = |axis: &str, both: &str| {
+                words.contains(&both) || words.windows(2).any(|pair| *pair == [axis, "up"])
+            };
+            match (says("y", "yup"), says("z", "zup")) {
+                (true, false) => return Self::Y,
+                (false, true) => return Self::Z,
+                _ => {}
+            }
+        }
+        let extent = bounds.max - bounds.min;
+        let size = extent.max_element();
+        if bounds.is_empty() || size <= 0.0 {
+            return usual;
+        }
+        // Farther than models are drawn from their origin, and than their own size.
+        let away = bounds.center().abs() / size.max(FAR_M);
+        let [x, y, z] = away.to_array().map(|away| away > 4.0);
+        match [x, y, z] {
+            [true, true, false] => return Self::Z,
+            [true, false, true] => return Self::Y,
+            _ => {}
+        }
+        let stands =
+            |axis: usize| bounds.min[axis].abs() <= 1e-3 * size && extent[axis] >= RISES * size;
+        match (stands(1), stands(2)) {
+            (true, false) => Self::Y,
+            (false, true) => Self::Z,
+            _ => usual,
+        }
+    }
+}
+
+/// Coordinates of a map are at least some times as large, meters.
+const FAR_M: f64 = 1e3;
+
+/// The least height of what stands, of its largest extent.
+const RISES: f64 = 0.25;
+
+impl Scene {
+    /// The scene, as its file has it, with this axis of the file up: what it shows, its cameras and
+    /// its lights.
+    #[must_use]
+    pub fn turned_up(mut self, up: UpAxis) -> Self {
+        self.up = up;
+        if matches!(up, UpAxis::Y | UpAxis::Auto) {
+            return self;
+        }
+        let turn = up.turn();
+        self.rig.turn = Some(turn);
+        for instance in &mut self.instances {
+            if instance.skin.is_none() {
+                instance.world_from_object = turn * instance.world_from_object;
+            }
+        }
+        for SceneCamera { pose, .. } in &mut self.cameras {
+            pose.eye = turn.transform_point3(pose.eye);
+            pose.target = turn.transform_point3(pose.target);
+            pose.up = turn.transform_vector3(pose.up);
+        }
+        for light in &mut self.lights {
+            light.world_from_light = turn * light.world_from_light;
+        }
+        let motion = self.rig.motion_bounds;
+        self.rig.motion_bounds = Bounds::EMPTY;
+        self.rig
+            .motion_bounds
+            .include_transformed(&turn, &motion, 0.0);
+        self.framing = FramingPoints::default();
+        self
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::*;
+    use crate::scene::{
+        builtin,
+        pose::{Motion, Pose},
+    };
+
+    #[test]
+    fn every_turn_makes_its_axis_up_and_keeps_the_handedness() {
+        let axes = [
+            DVec3::Y,
+            DVec3::Z,
+            DVec3::X,
+            DVec3::NEG_Y,
+            DVec3::NEG_Z,
+            DVec3::NEG_X,
+        ];
+        for (up, axis) in UpAxis::ALL.into_iter().zip(axes) {
+            assert_eq!(up.turn().transform_vector3(axis), DVec3::Y, "{up:?}");
+            assert_eq!(up.turn().determinant(), 1.0, "{up:?}");
+        }
+    }
+
+    #[test]
+    fn what_moves_turns_as_what_stands_still_does() {
+        for query in ["tentacle?tess=2", "teapot?tess=2", "finishes?lamps=3"] {
+            let scene = builtin::build(query).expect("a scene");
+            for up in UpAxis::ALL {
+                let turned = scene.clone().turned_up(up);
+                let places = |scene: &Scene| match Pose::at_rest(scene) {
+                    Some(_) => Pose::at(
+                        scene,
+                        &Motion {
+                            clip: Some(0),
+                            time_s: 0.3,
+                            ..Motion::default()
+                        },
+                    )
+                    .bounds(scene),
+                    None => scene.bounds(),
+                };
+                let mut expected = Bounds::EMPTY;
+                expected.include_transformed(&up.turn(), &places(&scene), 0.0);
+                let found = places(&turned);
+                let off = (found.min - expected.min)
+                    .abs()
+                    .max((found.max - expected.max).abs());
+                assert!(
+                    off.max_element() < 1e-6,
+                    "{query} {up:?}: {found:?}, not {expected:?}"
+                );
+                for (before, after) in scene.lights.iter().zip(&turned.lights) {
+                    let [before, after] =
+                        [before, after].map(|light| light.world_from_light.w_axis);
+                    assert_eq!(up.turn() * before, after, "{query} {up:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_axis_of_a_mesh_is_guessed_with_care() {
+        // The box, the usual axis, the right one, and a name.
+        let table = "
+            -1 -1 -1  1 1 1  y z  Part_Z-UP
+            -1 -1 -1  1 1 1  z y  castle yup
+            -1 -1 -1  1 1 1  y y  zup and y-up
+            -1 -1 -1  1 1 1  y y  Syzup
+            -1 -1 -1  1 1 1  z z  nothing tells
+            1 1 1  -1 -1 -1  z z  empty
+            -1 -1 0  1 1 2   y z  stands
+            -1 0 -1  1 2 1   z y  stands
+            0 0 0  1 1 1     y y  stands either way
+            10 0.5 0  11 1.5 1  y z  stands aside
+            -1 -1 0  1 1 0.1 y y  a sign on a wall
+            -1 0 -1  1 0.1 1 z z  a plate on the bed of a printer
+            448250 5411930 90  448260 5411940 99    y z  east and north of a map
+            448250 90 -5411940  448260 99 -5411930  z y  the same as y up has it";
+        let axis = |word: &str| match word {
+            "y" => UpAxis::Y,
+            _ => UpAxis::Z,
+        };
+        for row in table.lines().skip(1) {
+            let words: Vec<&str> = row.split_whitespace().collect();
+            let number = |i: usize| words[i].parse::<f64>().expect("a number");
+            let bounds = Bounds {
+                min: DVec3::new(number(0), number(1), number(2)),
+                max: DVec3::new(number(3), number(4), number(5)),
+            };
+            let guessed = UpAxis::guessed(&bounds, [&*words[8..].join(" ")], axis(words[6]));
+            assert_eq!(guessed, axis(words[7]), "{row}");
+        }
+    }
+}
