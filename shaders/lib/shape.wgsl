@@ -10,12 +10,6 @@ const SHAPE_TRIANGLES = 0u;
 const SHAPE_BOXES = 1u;
 const SHAPE_POINTS = 2u;
 
-// The sign of a triangle's area on the screen; a point, whose corners are one, shows its front.
-fn shape_orientation(t: Triangle) -> i32 {
-    if triangle_is_point(t.draw) { return select(-1, 1, (draws[t.draw].flags & DRAW_MIRRORED) != 0u); }
-    return fixed_sign(fixed_edge(vertex_at(t.a), vertex_at(t.b), vertex_at(t.c)));
-}
-
 // Is the sample at p in the disc of a corner?
 fn disc_contains(corner: vec4u, p: vec2i) -> bool {
     let d = p - vertex_at(corner);

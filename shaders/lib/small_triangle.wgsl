@@ -37,8 +37,8 @@ fn small_triangle(invocation: u32) {
     let a = vertex_at(t.a);
     let b = vertex_at(t.b);
     let c = vertex_at(t.c);
-    var low = min(min(a, b), c);
-    var high = max(max(a, b), c);
+    let low = min(min(a, b), c);
+    let high = max(max(a, b), c);
     let is_large = max(high.x - low.x, high.y - low.y) > SMALL_EXTENT;
     var area = fixed_small_area(a, b, c);
     if is_large { area = fixed_sign(fixed_edge(a, b, c)); }
@@ -47,12 +47,8 @@ fn small_triangle(invocation: u32) {
         return;
     }
     if !triangle_is_shown(draw_flags, area > 0) { return; }
-    if HAS_POINTS && triangle_is_point(t.draw) {
-        let point = point_of(t);
-        low = point.xy - point.z;
-        high = point.xy + point.z;
-    }
-    let pixels = triangle_pixels(low, high);
+    let box = triangle_box(t, vec4i(low, high));
+    let pixels = triangle_pixels(box.xy, box.zw);
     if any(pixels.zw < pixels.xy) { return; }
     if is_large {
         if IS_FIRST_VISIT { queues_push_large(id); }

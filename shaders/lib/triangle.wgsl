@@ -5,6 +5,7 @@
 //@ use glue/draws
 //@ use glue/index_bytes
 //@ use variants/draw_records
+//@ use variants/points
 //@ use variants/loads
 
 // ---- Draws. `draws` is a uniform where the scene has one draw, else a storage buffer: the glue declares it. Its records are
@@ -161,89 +162,9 @@ fn triangle_load(id: u32) -> Triangle {
 
 // The same where the draw is known.
 fn triangle_of(draw: u32, id: u32) -> Triangle {
-    if HAS_POINTS && triangle_is_point(draw) { return triangle_of_point(draw, id); }
     var at = 3u * id + vec3u(0u, 1u, 2u);
     if !UNSHARES_VERTICES { at = draws[draw].first_vertex + triangle_vertices(draw, id - draws[draw].first_triangle); }
-    return Triangle(load_record(at.x), load_record(at.y), load_record(at.z), id, draw, id, 7u);
-}
-
-// ---- Points. A point is drawn as a triangle about it, whose corners all have its depth. Of that its disc is shown, or where the disc
-// is smaller than the least one, which holds a sample wherever it lies, the pixel in which the point lies. Integers decide.
-
-// Some draws are points, which no effect replaces.
-override HAS_POINTS: bool = false;
-
-// Radius of the largest disc, in pixels.
-const POINT_MAX_PX = 32u;
-
-fn triangle_is_point(draw: u32) -> bool {
-    return !ONLY_TRIANGLE_LISTS && draw_topology(draw) == TOPOLOGY_POINTS;
-}
-
-// Radius of the least disc in units: half the diagonal of a pixel, rounded up.
-fn point_least() -> u32 {
-    return (182u * u32(grid_unit()) + 255u) >> 8u;
-}
-
-// The radius of a draw's discs where 1/w is `inv_w`, in units, rounded down: the product of two floats, exactly.
-fn point_radius(draw: u32, inv_w: u32) -> u32 {
-    let most = POINT_MAX_PX << SUBPIXEL_BITS;
-    let factors = vec2u(bitcast<u32>(draw_point_radius(draw)), inv_w);
-    let exponents = factors >> vec2u(23u);
-    if exponents.x == 0u || exponents.y == 0u { return 0u; }
-    let significands = (factors & vec2u(0x7fffffu)) | vec2u(0x800000u);
-    let product = fixed_umul(significands.x, significands.y);
-    // Sixteen bits of 46 are cut off here.
-    let high = (product.hi << 16u) | (product.lo >> 16u);
-    let shift = 284 - i32(exponents.x + exponents.y + SUBPIXEL_BITS);
-    if shift >= 32 { return 0u; }
-    if shift < 0 { return most; }
-    return min(high >> u32(shift), most);
-}
-
-// The triangle is one unit farther away than its disc is wide, or touches the least one where that stands for the pixel.
-fn triangle_of_point(draw: u32, id: u32) -> Triangle {
-    let first = draws[draw].first_triangle;
-    var at = 3u * id;
-    if !UNSHARES_VERTICES { at = draws[draw].first_vertex + triangle_vertices(draw, id - first).x; }
-    let record = load_record(at);
-    let radius = point_radius(draw, record.w);
-    let inner = i32(select(radius + 1u, point_least(), radius < point_least()));
-    // At least as wide as a root of 3 says, so that the sides do not cut the disc.
-    let half = ((inner * 1774) >> 10u) + 1;
-    let aside = select(half, -half, (draws[draw].flags & DRAW_MIRRORED) != 0u);
-    let p = vertex_at(record);
-    // What would reach out of the guard band is left out, as if it were clipped.
-    let is_out = max(abs(p.x), abs(p.y)) > 8388607 - 2 * inner;
-    let flags = (record.x & 255u) | select(0u, VERTEX_LEFT, is_out);
-    let x = vec3i(p.x - aside, p.x + aside, p.x);
-    let y = vec3i(p.y + inner, p.y + inner, p.y - 2 * inner);
-    let xs = (bitcast<vec3u>(x) << vec3u(8u)) | vec3u(flags);
-    let ys = bitcast<vec3u>(y) << vec3u(8u);
-    return Triangle(
-        vec4u(xs.x, ys.x, record.zw), vec4u(xs.y, ys.y, record.zw), vec4u(xs.z, ys.z, record.zw), id, draw, id, 7u);
-}
-
-// Where the triangle about a point has the point, and how far its sides are away.
-fn point_of(t: Triangle) -> vec3i {
-    let low = vertex_at(t.a);
-    let top = vertex_at(t.c);
-    let inner = (low.y - top.y) / 3;
-    return vec3i(top.x, low.y - inner, inner);
-}
-
-// Does a point show at the sample of a pixel?
-fn point_covers(t: Triangle, pixel: vec2i) -> bool {
-    let point = point_of(t);
-    if point.z == i32(point_least()) { return all((point.xy >> vec2u(SUBPIXEL_BITS)) == pixel); }
-    let radius = u32(point.z - 1);
-    let d = vec2u(abs(grid_sample(pixel) - point.xy));
-    if max(d.x, d.y) > radius { return false; }
-    // The squares of a finer grid exceed a word.
-    if SUBPIXEL_BITS > 8u {
-        return !fixed_is_less(fixed_umul(radius, radius), fixed_add(fixed_umul(d.x, d.x), fixed_umul(d.y, d.y)));
-    }
-    return d.x * d.x + d.y * d.y <= radius * radius;
+    return triangle_spread(Triangle(load_record(at.x), load_record(at.y), load_record(at.z), id, draw, id, 7u));
 }
 
 // Is a triangle of this orientation drawn, given the flags of its draw? Clockwise on screen (area > 0) is the back of a glTF

@@ -27,7 +27,7 @@ fn raster_points(
         if IS_FIRST_VISIT && part == 0u { triangle_rejected(any_flag); }
         return;
     }
-    let orientation = shape_orientation(t);
+    let orientation = triangle_orientation(t);
     if orientation == 0 {
         if IS_FIRST_VISIT && part == 0u { atomicAdd(&counters.degenerate, 1u); }
         return;

@@ -27,6 +27,8 @@ enum Reader {
     Gltf,
     /// With the axis that is up in most files.
     Mesh(LoadModel, UpAxis),
+    /// Its +z is up.
+    Survey(LoadModel),
 }
 
 /// Every format that is read. `tests/house/registry.rs` compares the texts that name them.
@@ -66,12 +68,12 @@ pub const MODEL_FORMATS: &[ModelFormat] = &[
     ModelFormat {
         extension: "xyz",
         beside: &[],
-        reader: Reader::Mesh(mesh_files::load_xyz),
+        reader: Reader::Mesh(mesh_files::load_xyz, UpAxis::Z),
     },
     ModelFormat {
         extension: "las",
         beside: &[],
-        reader: Reader::Mesh(mesh_files::load_las),
+        reader: Reader::Survey(mesh_files::load_las),
     },
 ];
 
@@ -96,7 +98,7 @@ impl ModelFormat {
             Reader::Gltf => model::load_as(path, budget, |model, budget, read| {
                 gltf::load_variant(model, budget, variant, read)
             }),
-            Reader::Mesh(load, _) => model::load_as(path, budget, load),
+            Reader::Mesh(load, _) | Reader::Survey(load) => model::load_as(path, budget, load),
         }
     }
 
@@ -105,6 +107,7 @@ impl ModelFormat {
         let names = scene.named_nodes.iter().map(|node| node.name.as_str());
         match self.reader {
             Reader::Gltf => UpAxis::Y,
+            Reader::Survey(_) => UpAxis::Z,
             Reader::Mesh(_, usual) => UpAxis::guessed(
                 &scene.bounds(),
                 [&*scene.name].into_iter().chain(names),

@@ -98,7 +98,7 @@ pub struct SampleRules {
     pub draw_order: Option<draw_order::Mode>,
     /// The alpha of a texture discards samples.
     pub has_mask: bool,
-    /// Some primitives are points, and no effect draws corners.
+    /// Some primitives are points.
     pub has_points: bool,
 }
 

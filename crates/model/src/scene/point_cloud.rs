@@ -103,7 +103,7 @@ pub fn diameter(places: impl ExactSizeIterator<Item = DVec3>, bounds: &Bounds) -
     // From the middle of four points of a square lattice to each, with something for uneven ones.
     const OVERLAP: f64 = 1.7;
     let (count, size) = (places.len() as f64, (bounds.max - bounds.min).length());
-    if count < 2.0 || size.is_nan() || size <= 0.0 {
+    if count < 2.0 || !size.is_finite() || size <= 0.0 {
         return 0.0;
     }
     let cell = CELL * size / count.sqrt();

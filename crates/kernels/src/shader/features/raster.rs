@@ -351,9 +351,16 @@ const SHAPE: Feature = Feature {
         Shape::Boxes => "shape=boxes".into(),
         Shape::Points => "shape=points".into(),
     },
+    variants: &[("points", |key, _| match key.samples.shape {
+        _ if !key.samples.has_points => "default",
+        Shape::Points => "corners",
+        Shape::Triangles | Shape::Boxes => "spread",
+    })],
     constants: &[
         ("SHAPE", |key, _| (key.samples.shape as u32).into()),
-        ("HAS_POINTS", |key, _| flag(key.samples.has_points)),
+        ("SHOWS_DISCS", |key, _| {
+            flag(key.samples.shape == Shape::Triangles)
+        }),
         ("INVOCATIONS_PER_TRIANGLE", |key, _| {
             key.work.invocations_per_triangle.into()
         }),

@@ -182,14 +182,12 @@ impl Layout {
         usize::from(record[self.class] & self.class_mask)
     }
 
-    /// The place, with y up.
     fn place(&self, record: &[u8]) -> [f64; 3] {
-        let [x, y, z] = [0, 1, 2].map(|axis: usize| {
+        [0, 1, 2].map(|axis: usize| {
             let at = 4 * axis;
             let steps = [0, 1, 2, 3].map(|byte: usize| record[at + byte]);
             f64::from(i32::from_le_bytes(steps)) * self.scale[axis] + self.offset[axis]
-        });
-        [x, z, -y]
+        })
     }
 
     /// Its color, or its intensity.

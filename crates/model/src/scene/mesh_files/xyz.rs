@@ -1,4 +1,5 @@
-//! XYZ: text with a point on each line: x, y and z, then a gray or a color, then perhaps a normal.
+//! XYZ and PTS: text with a point on each line: x, y and z, then a gray, a color, or both, or a color
+//! and a normal.
 
 use super::{
     builder::{Builder, Kind, Room, Vertex},
@@ -54,9 +55,9 @@ pub fn load(
         };
         let mut point = Vertex::at([0; 4], [x, y, z]);
         let shown = |at: usize| (values[at] / brightest) as f32;
-        point.color = colors::of_vertex(match count {
-            4 | 5 => [shown(3); 3],
-            _ => [shown(3), shown(4), shown(5)],
+        point.color = colors::of_vertex(match channels(count) {
+            (first, 1) => [shown(first); 3],
+            (first, _) => [0, 1, 2].map(|channel| shown(first + channel)),
         });
         point.normal = [6, 7, 8].map(|at: usize| values[at] as f32);
         let part = builder.part(kind)?;
@@ -86,6 +87,16 @@ fn is_bare(line: &[u8]) -> bool {
     text.is_empty() || text.starts_with(b"#") || text.starts_with(b"//")
 }
 
+/// Where the color stands among so many numbers, and how many they are: one is a gray, and of seven
+/// one stands before the color.
+fn channels(count: usize) -> (usize, usize) {
+    match count {
+        ..=5 => (3, 1),
+        7 => (4, 3),
+        _ => (3, 3),
+    }
+}
+
 /// The value of a channel that is full: one, a byte's, that of two bytes, or else the largest.
 fn brightest(model: &dyn Source) -> Result<f64, LoadError> {
     let (mut stream, mut line) = (Stream::new(model), Vec::new());
@@ -93,12 +104,11 @@ fn brightest(model: &dyn Source) -> Result<f64, LoadError> {
     while stream.line(&mut line)? {
         let mut values = [0.0; MOST];
         let count = read(&line, &mut values);
-        let channels = if count < 6 { 3..count.min(4) } else { 3..6 };
-        most = values
-            .get(channels)
-            .unwrap_or_default()
-            .iter()
-            .fold(most, |a, b| a.max(*b));
+        if count > 3 {
+            let (first, channels) = channels(count);
+            let shown = &values[first..first + channels];
+            most = shown.iter().fold(most, |a, b| a.max(*b));
+        }
     }
     let full = [1.0, 255.0, 65_535.0]
         .into_iter()
