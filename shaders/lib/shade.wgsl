@@ -9,6 +9,7 @@
 //@ use lib/surface
 //@ use variants/draw_records
 //@ use variants/loads
+//@ use variants/points
 //@ use variants/vertex_effects
 //@ use steps/shade_step
 

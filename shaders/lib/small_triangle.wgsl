@@ -4,6 +4,7 @@
 //@ use lib/fixed
 //@ use lib/triangle
 //@ use lib/queues
+//@ use variants/points
 //@ use variants/triangle_source
 //@ use variants/coverage
 //@ use variants/framebuffer_write

@@ -9,6 +9,8 @@
 //@ declare fn triangle_orientation(t: Triangle) -> i32
 // The box of what is shown of a small one, in units, given that of its corners.
 //@ declare fn triangle_box(t: Triangle, corners: vec4i) -> vec4i
+// Is it no point, or does it show at the sample of a pixel?
+//@ may declare fn point_covers(t: Triangle, pixel: vec2i) -> bool
 
 //@ variant default
 // No primitive is points.
@@ -113,8 +115,8 @@ fn point_of(t: Triangle) -> vec3i {
     return vec3i(top.x, low.y - inner, inner);
 }
 
-// Does a point show at the sample of a pixel?
 fn point_covers(t: Triangle, pixel: vec2i) -> bool {
+    if !triangle_is_point(t.draw) { return true; }
     let point = point_of(t);
     if point.z == i32(point_least()) { return all((point.xy >> vec2u(SUBPIXEL_BITS)) == pixel); }
     let radius = u32(point.z - 1);

@@ -42,10 +42,11 @@ fn sample_test_particle_disc(t: Triangle, at: vec2u, pixel: u32) -> bool {
 
 //@ step point
 // Of the triangle about a point its disc is drawn, or its pixel.
+//@ use lib/triangle
 //@ use variants/points
 
 fn sample_test_point(t: Triangle, at: vec2u, pixel: u32) -> bool {
-    return !triangle_is_point(t.draw) || point_covers(t, vec2i(at));
+    return point_covers(t, vec2i(at));
 }
 
 //@ step alpha_mask

@@ -5,6 +5,7 @@
 //@ use lib/triangle
 //@ use lib/shape
 //@ use variants/depth
+//@ use variants/points
 //@ use variants/framebuffer_write
 //@ use steps/sample_test
 //@ use steps/mark_tiles
