@@ -348,7 +348,9 @@ fn clouds(scene: &Scene) -> Vec<([f32; 3], u32)> {
         };
         let normals = u32::from(primitive.normals.stride > 0);
         assert!(primitive.is_points());
-        (0..primitive.vertex_count()).map(move |at| (color(at), normals)).collect::<Vec<_>>()
+        (0..primitive.vertex_count())
+            .map(move |at| (color(at), normals))
+            .collect::<Vec<_>>()
     };
     scene.primitives.iter().flat_map(of).collect()
 }
@@ -358,11 +360,14 @@ fn numbers_behind_the_place_of_a_point_of_text_are_a_gray_a_color_or_a_color_and
     let (white, red) = ([1.0; 3], [1.0, 0.0, 0.0]);
     for (text, wanted) in [
         ("0 0 0\n1 0 0\n", (white, 0)),
-        ("# x y z\n0,0,0,9\n1;0;0;9\n", (white, 0)),
+        ("# x y z\n0,0,0,255\n1;0;0;255\n", (white, 0)),
         ("2\n0 0 0 255 0 0\n1 0 0 255 0 0", (red, 0)),
         ("0 0 0 1 0 0 name\n1 0 0 1 0 0 name", (red, 0)),
         ("0 0 0 -7 65535 0 0\n1 0 0 -7 65535 0 0", (red, 0)),
-        ("x y z r g b nx ny nz\n0 0 0 255 0 0 0 0 1\n1 0 0 255 0 0 0 0 1", (red, 1)),
+        (
+            "x y z r g b nx ny nz\n0 0 0 255 0 0 0 0 1\n1 0 0 255 0 0 0 0 1",
+            (red, 1),
+        ),
     ] {
         assert_eq!(clouds(&opened(load_xyz, text, &[])), [wanted; 2], "{text}");
     }
@@ -412,7 +417,8 @@ fn points_of_las_keep_their_place_color_and_class() {
             let wanted = DVec3::new(500_000.0 + x, 5_400_000.0 + y, 100.0 + z);
             assert!(place.distance(wanted) < 1e-4, "{place}, not {wanted}");
         }
-        let is_red = |([r, g, b], _): &([f32; 3], u32)| *r > 0.5 && g == b && (*g == *r) != (format == 2);
+        let is_red =
+            |([r, g, b], _): &([f32; 3], u32)| *r > 0.5 && g == b && (*g == *r) != (format == 2);
         assert!(clouds(&scene).iter().all(is_red), "{:?}", clouds(&scene));
     }
 }
@@ -430,13 +436,26 @@ fn a_damaged_las_opens_as_far_as_it_goes_or_is_refused_in_words() {
         bytes[at] = value;
         bytes
     };
-    let header = "it is no LAS file: it does not begin with \"LASF\" and a header; fetch or export it again";
+    let header =
+        "it is no LAS file: it does not begin with \"LASF\" and a header; fetch or export it again";
     for (bytes, sentence) in [
         (whole[..226].to_vec(), header),
-        (with(104, 0x80), "it is compressed (LAZ), which is not read; unpack it to LAS"),
-        (with(104, 11), "its points are of the format 11; allowed: 0 to 10"),
-        (with(105, 19), "its points have 19 bytes; those of the format 0 have 20 or more"),
-        (with(107, 0), "there is nothing to draw: it has no points; export it again"),
+        (
+            with(104, 0x80),
+            "it is compressed (LAZ), which is not read; unpack it to LAS",
+        ),
+        (
+            with(104, 11),
+            "its points are of the format 11; allowed: 0 to 10",
+        ),
+        (
+            with(105, 19),
+            "its points have 19 bytes; those of the format 0 have 20 or more",
+        ),
+        (
+            with(107, 0),
+            "there is nothing to draw: it has no points; export it again",
+        ),
     ] {
         refused(load_las, &bytes, sentence);
     }

@@ -86,7 +86,7 @@ impl ModelFormat {
         })
     }
 
-    /// Loads a file of this format within the memory budget of the process, with its own materials.
+    /// Loads a file within the memory budget of the process, with its own materials.
     pub fn load(&self, path: &Path) -> Result<Scene, LoadError> {
         self.load_variant(path, "")
     }
