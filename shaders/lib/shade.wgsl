@@ -9,6 +9,7 @@
 //@ use lib/surface
 //@ use variants/draw_records
 //@ use variants/loads
+//@ use variants/points
 //@ use variants/vertex_effects
 //@ use steps/shade_step
 
@@ -60,7 +61,7 @@ fn sample_unclipped(t: Triangle, pixel: vec2u) -> SamplePosition {
 fn sample_in_shape(e: vec3f, t: Triangle, p: vec2i) -> vec3f {
     if SHAPE == SHAPE_TRIANGLES { return e; }
     // Not from the sum of e: its roundings may exceed the area, since the sample may lie far outside the triangle.
-    let orientation = f32(fixed_sign(fixed_edge(vertex_at(t.a), vertex_at(t.b), vertex_at(t.c))));
+    let orientation = f32(triangle_orientation(t));
     if SHAPE == SHAPE_BOXES { return max(e * orientation, vec3f(0.0)) * orientation; }
     let corner = disc_corner(t.a, t.b, t.c, p);
     return orientation * vec3f(vec3<bool>(corner == 0u, corner == 1u, corner == 2u));

@@ -4,6 +4,7 @@
 //@ use lib/fixed
 //@ use lib/triangle
 //@ use lib/queues
+//@ use variants/points
 //@ use variants/triangle_source
 //@ use variants/coverage
 //@ use variants/framebuffer_write
@@ -47,7 +48,8 @@ fn small_triangle(invocation: u32) {
         return;
     }
     if !triangle_is_shown(draw_flags, area > 0) { return; }
-    let pixels = triangle_pixels(low, high);
+    let box = triangle_box(t, vec4i(low, high));
+    let pixels = triangle_pixels(box.xy, box.zw);
     if any(pixels.zw < pixels.xy) { return; }
     if is_large {
         if IS_FIRST_VISIT { queues_push_large(id); }

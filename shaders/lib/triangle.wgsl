@@ -5,6 +5,7 @@
 //@ use glue/draws
 //@ use glue/index_bytes
 //@ use variants/draw_records
+//@ use variants/points
 //@ use variants/loads
 
 // ---- Draws. `draws` is a uniform where the scene has one draw, else a storage buffer: the glue declares it. Its records are
@@ -34,9 +35,9 @@ struct Draw {
     color_stride: u32,
     color_format: u32,           // component count in bits 8 and up; 0 without colors
     scopes: u32,                 // bit k is set if the draw lies in scope k of the stack
+    point_radius_px: f32,        // radius of the discs of its points at a distance of 1
     spare_0: u32,
     spare_1: u32,
-    spare_2: u32,
 }
 
 // A draw whose primitive is described in `shapes`. Its matrices to the world lie behind the attributes.
@@ -90,11 +91,12 @@ const DRAW_PRIMITIVE_SHIFT = 8u;
 override HAS_INDICES: bool = true;
 // Every draw has u32 indices.
 override U32_INDICES: bool = false;
-// No draw is a strip or a fan.
+// No draw is a strip, a fan or points.
 override ONLY_TRIANGLE_LISTS: bool = false;
 
 const TOPOLOGY_STRIP = 1u;
 const TOPOLOGY_FAN = 2u;
+const TOPOLOGY_POINTS = 3u;
 
 // Vertex within its draw at a position of the draw's index list; an index out of range means the last vertex.
 fn index_at(draw: u32, position: u32) -> u32 {
@@ -115,6 +117,7 @@ fn triangle_vertices(draw: u32, t: u32) -> vec3u {
         let topology = draw_topology(draw);
         if topology == TOPOLOGY_STRIP { positions = vec3u(t, t + 1u + (t & 1u), t + 2u - (t & 1u)); }
         if topology == TOPOLOGY_FAN { positions = vec3u(t + 1u, t + 2u, 0u); }
+        if topology == TOPOLOGY_POINTS { positions = vec3u(t); }
     }
     return vec3u(index_at(draw, positions.x), index_at(draw, positions.y), index_at(draw, positions.z));
 }
@@ -161,7 +164,7 @@ fn triangle_load(id: u32) -> Triangle {
 fn triangle_of(draw: u32, id: u32) -> Triangle {
     var at = 3u * id + vec3u(0u, 1u, 2u);
     if !UNSHARES_VERTICES { at = draws[draw].first_vertex + triangle_vertices(draw, id - draws[draw].first_triangle); }
-    return Triangle(load_record(at.x), load_record(at.y), load_record(at.z), id, draw, id, 7u);
+    return triangle_spread(Triangle(load_record(at.x), load_record(at.y), load_record(at.z), id, draw, id, 7u));
 }
 
 // Is a triangle of this orientation drawn, given the flags of its draw? Clockwise on screen (area > 0) is the back of a glTF

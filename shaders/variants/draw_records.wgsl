@@ -11,6 +11,8 @@
 //@ declare fn draw_normals(draw: u32) -> AttributePlace
 //@ declare fn draw_colors(draw: u32) -> AttributePlace
 //@ declare fn draw_base_color(draw: u32) -> vec4f
+// Radius of the discs of its points in pixels, at a distance of 1.
+//@ declare fn draw_point_radius(draw: u32) -> f32
 // Object-space origin of packed and of eye-relative positions, and one step of a packed one.
 //@ declare fn draw_origin(draw: u32) -> vec3f
 //@ declare fn draw_step(draw: u32) -> vec3f
@@ -53,6 +55,10 @@ fn draw_colors(draw: u32) -> AttributePlace {
 
 fn draw_base_color(draw: u32) -> vec4f {
     return draws[draw].base_color;
+}
+
+fn draw_point_radius(draw: u32) -> f32 {
+    return draws[draw].point_radius_px;
 }
 
 fn draw_origin(draw: u32) -> vec3f {
@@ -120,6 +126,11 @@ fn draw_colors(draw: u32) -> AttributePlace {
 
 fn draw_base_color(draw: u32) -> vec4f {
     return shapes[draw_shape(draw)].base_color;
+}
+
+// Scenes with points are not drawn so.
+fn draw_point_radius(draw: u32) -> f32 {
+    return 0.0;
 }
 
 fn draw_origin(draw: u32) -> vec3f {

@@ -1,5 +1,5 @@
-// Sample tests: is a covered sample drawn? All steps must pass, in this order: glass is left out, the sample effects, the shape of particle discs,
-// the alpha mask of the material, and the draw order, which counts the samples that are left.
+// Sample tests: is a covered sample drawn? All steps must pass, in this order: glass is left out, the sample effects, the shape of particle discs
+// and of points, the alpha mask of the material, and the draw order, which counts the samples that are left.
 // Chosen by the stack and the scene; without any, every covered sample is drawn.
 //@ steps fn sample_test(t: Triangle, at: vec2u, pixel: u32) -> bool
 
@@ -38,6 +38,15 @@ fn sample_test_particle_disc(t: Triangle, at: vec2u, pixel: u32) -> bool {
     let d = u32(abs(i32(areas.x + areas.y) - i32(areas.z)));
     let is_inside = !fixed_is_less(fixed_umul(2u * areas.x, 2u * areas.y), fixed_umul(d, d));
     return t.entry < frame.triangle_count && is_inside;
+}
+
+//@ step point
+// Of the triangle about a point its disc is drawn, or its pixel.
+//@ use lib/triangle
+//@ use variants/points
+
+fn sample_test_point(t: Triangle, at: vec2u, pixel: u32) -> bool {
+    return point_covers(t, vec2i(at));
 }
 
 //@ step alpha_mask

@@ -69,8 +69,8 @@ fn an_error_names_the_file_and_line_a_person_wrote() {
 #[test]
 fn a_pass_is_read_in_few_files() {
     for (pass, most) in [
-        (Pass::RasterSmall(RasterPhase::Depth), 12),
-        (Pass::Resolve, 16),
+        (Pass::RasterSmall(RasterPhase::Depth), 13),
+        (Pass::Resolve, 17),
     ] {
         let linked = linked(&plain_key(), pass);
         let files = linked.files();

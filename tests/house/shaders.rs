@@ -184,6 +184,7 @@ fn every_shape_and_order_validates_within_eight_storage_buffers() {
                     key.samples.draw_order,
                     key.paths.has_large,
                 ) = (shape, draw_order, has_large);
+                key.samples.has_points = has_large;
                 validate_all(&key);
             }
         }

@@ -12,6 +12,9 @@ pub const SUBPIXEL_BITS: u32 = 8;
 /// Sub-pixel units in a pixel with that many bits.
 pub const UNITS_PER_PIXEL: i32 = 1 << SUBPIXEL_BITS;
 
+/// The largest disc of a point has this radius, in pixels: with the triangle about it it is small.
+pub const MAX_POINT_RADIUS_PX: f64 = 32.0;
+
 /// Largest |x| and |y| of a snapped vertex that needs no guard-band clipping, in units of 1/256 px
 /// (32,767.996 px; symmetric, and exact in an f32).
 pub const GUARD_BAND: i32 = 8_388_607;

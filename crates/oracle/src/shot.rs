@@ -1,7 +1,11 @@
 //! What a picture shows, and how global triangle ids lead to draws and corner records.
 
+use super::render::point;
 use crate::{
-    effects::{Stack, hooks::Lighting},
+    effects::{
+        Stack,
+        hooks::{Lighting, Shape},
+    },
     frame::{Geometry, SnappedVertex},
     scene::{Scene, draw::Draw, view::View},
 };
@@ -49,10 +53,21 @@ impl<'a> Shot<'a> {
         draw_of(self.scene, self.draws, id)
     }
 
+    /// Are points of `draw` drawn as triangles about them? An effect that draws corners draws theirs.
+    pub fn draws_points(&self, draw: &Draw) -> bool {
+        self.scene.primitives[draw.primitive].is_points() && self.stack.shape() != Shape::Points
+    }
+
     /// Corner records of triangle `id` of `draw`, in the order of the file.
     pub fn corner_records(&self, draw: &Draw, geometry: &Geometry, id: u32) -> [SnappedVertex; 3] {
-        self.corner_indices(draw, geometry, id)
-            .map(|index| geometry.vertices[index])
+        let records = self
+            .corner_indices(draw, geometry, id)
+            .map(|index| geometry.vertices[index]);
+        if self.draws_points(draw) {
+            point::corners(&records[0], draw, geometry.subpixel_bits)
+        } else {
+            records
+        }
     }
 
     /// Indices of those records in the geometry.

@@ -1,10 +1,11 @@
-// raster_points: the corners of every triangle that is shown, as discs. Several invocations divide the rows of a triangle's discs among
+// raster_points: the corners of every triangle that is shown, and points, as discs. Several invocations divide the rows of a triangle's discs among
 // them. A triangle that would have to be clipped shows no discs.
 //@ use lib/frame
 //@ use lib/fixed
 //@ use lib/triangle
 //@ use lib/shape
 //@ use variants/depth
+//@ use variants/points
 //@ use variants/framebuffer_write
 //@ use steps/sample_test
 //@ use steps/mark_tiles
@@ -27,7 +28,7 @@ fn raster_points(
         if IS_FIRST_VISIT && part == 0u { triangle_rejected(any_flag); }
         return;
     }
-    let orientation = fixed_sign(fixed_edge(vertex_at(t.a), vertex_at(t.b), vertex_at(t.c)));
+    let orientation = triangle_orientation(t);
     if orientation == 0 {
         if IS_FIRST_VISIT && part == 0u { atomicAdd(&counters.degenerate, 1u); }
         return;

@@ -232,13 +232,10 @@ fn cameras_of_the_file_keep_their_lens_and_place() {
 fn what_is_left_out_is_noted() {
     let mut model = Model::square()
         .set("/extensionsUsed [\"KHR_materials_clearcoat\"]\n/animations []\nA/_HEAT 0");
-    model.primitive(json!({ "attributes": { "POSITION": 0 }, "mode": 0 }));
+    model.primitive(json!({ "attributes": { "POSITION": 0 }, "mode": 1 }));
     let scene = model.scene();
     assert_eq!(scene.primitives.len(), 1);
-    assert_noted(
-        &scene,
-        "mesh \"X\" primitive 1 is skipped: points and lines",
-    );
+    assert_noted(&scene, "mesh \"X\" primitive 1 is skipped: lines");
     assert_noted(
         &scene,
         "the extension \"KHR_materials_clearcoat\" is not supported and is ignored",

@@ -1,4 +1,4 @@
-//! Promise: OBJ with MTL, STL and PLY open: every form that they allow, exactly; a part that breaks
+//! Promise: OBJ with MTL, STL, PLY, XYZ and LAS open: every form that they allow, exactly; a part that breaks
 //! them is left out with one sentence that counts; what leaves nothing to draw is refused in words.
 
 use std::path::Path;
@@ -8,7 +8,8 @@ use rasterlab::scene::{
     Scene,
     gltf::LoadError,
     memory::MemoryBudget,
-    mesh_files::{LoadModel, load_obj, load_ply, load_stl},
+    mesh_files::{LoadModel, load_las, load_obj, load_ply, load_stl, load_xyz},
+    model::Primitive,
     parts::parts,
     texture::Texture,
 };
@@ -73,6 +74,7 @@ fn play(transcript: &str, beside: Files) {
         let format = match kind {
             "stl" => load_stl as LoadModel,
             "ply" => load_ply,
+            "xyz" => load_xyz,
             _ => load_obj,
         };
         if let Some(sentence) = lines[start + 1].strip_prefix("! ") {
@@ -328,6 +330,141 @@ fn ply_text(comments: &str, more: &str, vertices: &str, faces: &str) -> String {
 const PLACES: &str = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n";
 
 #[test]
+fn vertices_that_no_face_has_are_points() {
+    for (places, faces, points) in [(PLACES, "", 4), (PLACES, "3 0 1 2\n", 1)] {
+        let scene = opened(load_ply, ply_text("", "", places, faces), &[]);
+        let cloud = scene.primitives.last().expect("a primitive");
+        assert_eq!((cloud.is_points(), cloud.triangle_count()), (true, points));
+        assert_eq!(scene.primitives.len(), 1 + usize::from(!faces.is_empty()));
+    }
+}
+
+/// The colors of the points of a scene, from 0 to 1 in linear light, and how many have a normal.
+fn clouds(scene: &Scene) -> Vec<([f32; 3], u32)> {
+    let of = |primitive: &Primitive| {
+        let color = |at| match primitive.colors {
+            Some(colors) => colors.vector(&scene.vertex_bytes, at).map(|v| v as f32),
+            None => [1.0; 3],
+        };
+        let normals = u32::from(primitive.normals.stride > 0);
+        assert!(primitive.is_points());
+        (0..primitive.vertex_count())
+            .map(move |at| (color(at), normals))
+            .collect::<Vec<_>>()
+    };
+    scene.primitives.iter().flat_map(of).collect()
+}
+
+#[test]
+fn numbers_behind_the_place_of_a_point_of_text_are_a_gray_a_color_or_a_color_and_a_normal() {
+    let (white, red) = ([1.0; 3], [1.0, 0.0, 0.0]);
+    for (text, wanted) in [
+        ("0 0 0\n1 0 0\n", (white, 0)),
+        ("# x y z\n0,0,0,255\n1;0;0;255\n", (white, 0)),
+        ("2\n0 0 0 255 0 0\n1 0 0 255 0 0", (red, 0)),
+        ("0 0 0 1 0 0 name\n1 0 0 1 0 0 name", (red, 0)),
+        ("0 0 0 -7 65535 0 0\n1 0 0 -7 65535 0 0", (red, 0)),
+        (
+            "x y z r g b nx ny nz\n0 0 0 255 0 0 0 0 1\n1 0 0 255 0 0 0 0 1",
+            (red, 1),
+        ),
+    ] {
+        assert_eq!(clouds(&opened(load_xyz, text, &[])), [wanted; 2], "{text}");
+    }
+}
+
+/// A LAS file of this point format, whose steps are a centimeter.
+fn las(format: u8, stride: usize, points: &[([i32; 3], u8)]) -> Vec<u8> {
+    let mut bytes = vec![0; 227];
+    bytes[..4].copy_from_slice(b"LASF");
+    (bytes[24], bytes[25], bytes[96], bytes[104]) = (1, 2, 227, format);
+    bytes[105..107].copy_from_slice(&(stride as u16).to_le_bytes());
+    bytes[107..111].copy_from_slice(&(points.len() as u32).to_le_bytes());
+    for (axis, offset) in [500_000.0f64, 5_400_000.0, 100.0].into_iter().enumerate() {
+        bytes[131 + 8 * axis..][..8].copy_from_slice(&0.01f64.to_le_bytes());
+        bytes[155 + 8 * axis..][..8].copy_from_slice(&offset.to_le_bytes());
+    }
+    for (place, class) in points {
+        let mut point = vec![0; stride];
+        point[..12].copy_from_slice(bytemuck::cast_slice(place));
+        // An intensity, and where the format has a color, red.
+        point[13] = 200;
+        if format == 2 {
+            point[21] = 200;
+        }
+        point[if format < 6 { 15 } else { 16 }] = *class;
+        bytes.extend(point);
+    }
+    bytes
+}
+
+const SURVEYED: &[([i32; 3], u8)] = &[([0, 0, 0], 2), ([1, 0, 0], 6), ([0, 300, 40], 6)];
+
+#[test]
+fn points_of_las_keep_their_place_color_and_class() {
+    for (format, stride) in [(0, 20), (1, 30), (2, 26), (6, 30)] {
+        let scene = opened(load_las, las(format, stride, SURVEYED), &[]);
+        let names = scene.named_nodes.iter().map(|node| &*node.name);
+        assert_eq!(names.collect::<Vec<_>>(), ["ground", "building"]);
+        let places = scene.instances.iter().flat_map(|instance| {
+            let (scene, primitive) = (&scene, &scene.primitives[instance.primitive]);
+            let place = |at| DVec3::from(primitive.position(scene, at).map(f64::from));
+            (0..primitive.vertex_count())
+                .map(move |at| instance.world_from_object.transform_point3(place(at)))
+        });
+        for (place, (wanted, _)) in places.zip(SURVEYED) {
+            let [x, y, z] = wanted.map(|steps| 0.01 * f64::from(steps));
+            let wanted = DVec3::new(500_000.0 + x, 5_400_000.0 + y, 100.0 + z);
+            assert!(place.distance(wanted) < 1e-4, "{place}, not {wanted}");
+        }
+        let is_red =
+            |([r, g, b], _): &([f32; 3], u32)| *r > 0.5 && g == b && (*g == *r) != (format == 2);
+        assert!(clouds(&scene).iter().all(is_red), "{:?}", clouds(&scene));
+    }
+}
+
+#[test]
+fn a_damaged_las_opens_as_far_as_it_goes_or_is_refused_in_words() {
+    let whole = las(0, 20, SURVEYED);
+    let note = "the file ends after 2 of 3 points; what is there is drawn";
+    told(load_las, &whole[..whole.len() - 1], &[], &[note]);
+    for length in 0..whole.len() {
+        let _ = load(load_las, &whole[..length], &[]);
+    }
+    let with = |at: usize, value: u8| {
+        let mut bytes = whole.clone();
+        bytes[at] = value;
+        bytes
+    };
+    let header =
+        "it is no LAS file: it does not begin with \"LASF\" and a header; fetch or export it again";
+    for (bytes, sentence) in [
+        (whole[..226].to_vec(), header),
+        (
+            with(104, 0x80),
+            "it is compressed (LAZ), which is not read; unpack it to LAS",
+        ),
+        (
+            with(104, 11),
+            "its points are of the format 11; allowed: 0 to 10",
+        ),
+        (
+            with(105, 19),
+            "its points have 19 bytes; those of the format 0 have 20 or more",
+        ),
+        (
+            with(107, 0),
+            "there is nothing to draw: it has no points; export it again",
+        ),
+    ] {
+        refused(load_las, &bytes, sentence);
+    }
+    for at in 24..whole.len() {
+        let _ = load(load_las, &with(at, 0xff), &[]);
+    }
+}
+
+#[test]
 fn ply_is_read_by_what_its_header_says() {
     let plain = ply_text("comment hi\nobj_info x\n", "", PLACES, "4 0 1 2 3\n");
     let late = "ply\nformat ascii 1.0\nelement edge 1\nproperty int a\nelement face 2\nproperty uchar flags\nproperty list uint8 ushort vertex_index\nelement none 5\nelement vertex 4\nproperty list char float extra\nproperty float z\nproperty float x\nproperty float y\nend_header\n7\n0 3 0 1 2\n0 3 0 2 3\n0 0 0 0\n2 8 9 0 1 0\n1 5 0 1 1\n0 0 0 1\n";
@@ -414,12 +551,8 @@ fn a_broken_part_is_left_out_and_told_once_and_what_leaves_nothing_is_refused() 
         ("flag.mtl", b"newmtl a\nmap_Kd flag.png\n"),
         ("flag.png", &encoded(image::ImageFormat::Png)),
     ];
-    let points = ply_text("", "", PLACES, "").replace('\n', "\\n");
     let transcript = include_str!("mesh_files.txt").replace("BROKEN", &broken);
-    play(
-        &transcript.replace("NAN", &nan).replace("POINTS", &points),
-        beside,
-    );
+    play(&transcript.replace("NAN", &nan), beside);
     let mut far = stl(b"", &[(SQUARE_HALF, 0), (OTHER_HALF, 0)]);
     far[84 + 12..84 + 16].copy_from_slice(&f32::INFINITY.to_le_bytes());
     told(

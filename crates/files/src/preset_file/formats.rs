@@ -27,6 +27,8 @@ enum Reader {
     Gltf,
     /// With the axis that is up in most files.
     Mesh(LoadModel, UpAxis),
+    /// Its +z is up.
+    Survey(LoadModel),
 }
 
 /// Every format that is read. `tests/house/registry.rs` compares the texts that name them.
@@ -63,6 +65,16 @@ pub const MODEL_FORMATS: &[ModelFormat] = &[
         beside: &["png", "jpg", "jpeg", "webp"],
         reader: Reader::Mesh(mesh_files::load_ply, UpAxis::Y),
     },
+    ModelFormat {
+        extension: "xyz",
+        beside: &[],
+        reader: Reader::Mesh(mesh_files::load_xyz, UpAxis::Z),
+    },
+    ModelFormat {
+        extension: "las",
+        beside: &[],
+        reader: Reader::Survey(mesh_files::load_las),
+    },
 ];
 
 impl ModelFormat {
@@ -74,7 +86,7 @@ impl ModelFormat {
         })
     }
 
-    /// Loads a file of this format within the memory budget of the process, with its own materials.
+    /// Loads a file within the memory budget of the process, with its own materials.
     pub fn load(&self, path: &Path) -> Result<Scene, LoadError> {
         self.load_variant(path, "")
     }
@@ -86,7 +98,7 @@ impl ModelFormat {
             Reader::Gltf => model::load_as(path, budget, |model, budget, read| {
                 gltf::load_variant(model, budget, variant, read)
             }),
-            Reader::Mesh(load, _) => model::load_as(path, budget, load),
+            Reader::Mesh(load, _) | Reader::Survey(load) => model::load_as(path, budget, load),
         }
     }
 
@@ -95,6 +107,7 @@ impl ModelFormat {
         let names = scene.named_nodes.iter().map(|node| node.name.as_str());
         match self.reader {
             Reader::Gltf => UpAxis::Y,
+            Reader::Survey(_) => UpAxis::Z,
             Reader::Mesh(_, usual) => UpAxis::guessed(
                 &scene.bounds(),
                 [&*scene.name].into_iter().chain(names),

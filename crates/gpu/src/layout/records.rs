@@ -69,9 +69,9 @@ gpu_record! {
         pub color_stride: u32,
         pub color_format: u32,
         pub scopes: u32,
+        pub point_radius_px: f32,
         pub spare_0: u32,
         pub spare_1: u32,
-        pub spare_2: u32,
     }
 }
 

@@ -211,9 +211,9 @@ impl DrawRecord {
             color_stride: color.map_or(0, |c| c.stride),
             color_format: color.map_or(0, format_word),
             scopes: draw.scopes,
+            point_radius_px: draw.point_radius_px,
             spare_0: 0,
             spare_1: 0,
-            spare_2: 0,
         }
     }
 }

@@ -48,6 +48,7 @@ pub(super) fn key_of(
             shape: stack.shape,
             draw_order: stack.draw_order,
             has_mask,
+            has_points: needs.points,
         },
         paths: raster_paths(&options, needs, tuning, loops::samples(caps, loops)),
         work: WorkSharing {

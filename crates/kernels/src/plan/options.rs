@@ -226,7 +226,7 @@ fn culling_limit(options: &AccuracyOptions, inputs: &Inputs) -> Option<(Culling,
             (Culling::None, "effects move meshes out of their bounds")
         }
         _ if stack.has_particles => (Culling::None, "particles move out of any meshlet's bounds"),
-        _ if stack.shape == Shape::Points => (
+        _ if stack.shape == Shape::Points || inputs.needs.points => (
             Culling::None,
             "discs reach out of the bounds of their meshes",
         ),

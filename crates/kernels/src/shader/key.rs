@@ -98,6 +98,8 @@ pub struct SampleRules {
     pub draw_order: Option<draw_order::Mode>,
     /// The alpha of a texture discards samples.
     pub has_mask: bool,
+    /// Some primitives are points.
+    pub has_points: bool,
 }
 
 /// Which raster paths the sizes of the triangles call for.
@@ -299,6 +301,7 @@ impl KernelKey {
                 shape: Shape::Triangles,
                 draw_order: None,
                 has_mask: false,
+                has_points: false,
             },
             paths: RasterPaths {
                 has_clipping: true,
@@ -471,6 +474,7 @@ impl KernelKey {
     pub fn hides_blocks(&self) -> bool {
         let draws_all = !self.has_sample_effects()
             && !self.has_discs()
+            && !self.samples.has_points
             && !self.samples.has_mask
             && !self.has_glass()
             && self.samples.draw_order.is_none();

@@ -189,7 +189,7 @@ pub static SCENE: Section = Section {
                 Setting::new(
                     "path",
                     ValueType::Text { max_chars: 4096 },
-                    "A .glb, .gltf, .vrm, .obj, .stl or .ply file, relative to the folder of the preset",
+                    "A .glb, .gltf, .vrm, .obj, .stl, .ply, .xyz or .las file, relative to the folder of the preset",
                     MODEL,
                 )
                 .rule(is_file)

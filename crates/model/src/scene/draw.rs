@@ -42,6 +42,8 @@ pub struct Draw {
     pub is_faceted: bool,
     /// What lies behind it is seen through it.
     pub is_glass: bool,
+    /// Radius of the discs of points at a distance of 1, in pixels; 0 where there are none.
+    pub point_radius_px: f32,
     /// What deforms its vertices before they are transformed.
     pub deform: Option<Deform>,
     /// Index of its vertex 0 among the vertices of all draws that can deform.
@@ -156,6 +158,17 @@ fn nearest(bounds: &Bounds, eye: DVec3) -> [f32; 3] {
     eye.clamp(bounds.min, bounds.max).as_vec3().to_array()
 }
 
+/// Radius of the discs of a primitive's points at a distance of 1, in pixels: as large in the world
+/// as a volume says that its transform scales.
+fn point_radius_px(primitive: &Primitive, world_from_object: &DMat4, view: &View) -> f32 {
+    if !primitive.is_points() {
+        return 0.0;
+    }
+    let scale = libm::cbrt(world_from_object.determinant().abs());
+    let pixel_m = view.ndc_axes[1].length() * 2.0 / f64::from(view.height.max(1));
+    (0.5 * primitive.longest_edge * scale / pixel_m) as f32
+}
+
 /// The numbers of vertices and of triangles of all draws.
 pub fn totals(scene: &Scene, draws: &[Draw]) -> [u64; 2] {
     draws.last().map_or([0; 2], |last| {
@@ -257,12 +270,15 @@ pub fn scoped_draws(scene: &Scene, view: &View, scopes: &[Scope]) -> Result<Vec<
             origin,
             clip_from_object,
             world_from_object,
-            double_sided: scene.materials[primitive.material].double_sided || view.is_light(),
+            // A point faces the viewer.
+            double_sided: !primitive.is_points()
+                && (scene.materials[primitive.material].double_sided || view.is_light()),
             mirrored: (world_from_object.determinant() < 0.0)
                 != deform.as_ref().is_some_and(Deform::mirrors),
             is_uneven: is_uneven(&world_from_object),
             is_faceted: primitive.is_faceted,
             is_glass: scene.materials[primitive.material].is_glass(),
+            point_radius_px: point_radius_px(primitive, &world_from_object, view),
             deform,
             first_deformable: 0,
             scopes: masks.get(index).copied().unwrap_or_default(),

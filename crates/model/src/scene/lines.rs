@@ -105,12 +105,11 @@ impl Lines {
         let pose = Pose::at_rest(scene);
         let mut known: HashMap<usize, Vec<Chain>> = HashMap::new();
         let mut lines = Self::default();
-        // Particle discs have no edges.
-        let meshes = scene
-            .instances
-            .iter()
-            .enumerate()
-            .filter(|(_, instance)| scene.particle_discs != Some(instance.primitive));
+        // Particle discs and points have no edges.
+        let meshes = scene.instances.iter().enumerate().filter(|(_, instance)| {
+            let primitive = instance.primitive;
+            scene.particle_discs != Some(primitive) && !scene.primitives[primitive].is_points()
+        });
         for (draw, instance) in meshes {
             let chains = known.entry(instance.primitive).or_insert_with(|| {
                 chains(scene, &scene.primitives[instance.primitive], crease_deg)

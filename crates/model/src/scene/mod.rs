@@ -30,6 +30,7 @@ pub mod panorama;
 pub mod particle_discs;
 pub mod parts;
 pub mod pick;
+pub mod point_cloud;
 pub mod pose;
 pub mod punctual;
 pub mod quaternion;

@@ -27,6 +27,9 @@ pub enum Topology {
     List = 0,
     Strip = 1,
     Fan = 2,
+    /// Every corner is a point. It is drawn as a triangle whose three corners it is, spread about it
+    /// on the screen.
+    Points = 3,
 }
 
 impl Topology {
@@ -34,6 +37,7 @@ impl Topology {
     pub const fn triangles(self, corners: u32) -> u32 {
         match self {
             Self::List => corners / 3,
+            Self::Points => corners,
             Self::Strip | Self::Fan => corners.saturating_sub(2),
         }
     }
@@ -42,6 +46,7 @@ impl Topology {
     pub const fn corners(self, t: u32) -> [u32; 3] {
         match self {
             Self::List => [3 * t, 3 * t + 1, 3 * t + 2],
+            Self::Points => [t; 3],
             Self::Strip => [t, t + 1 + t % 2, t + 2 - t % 2],
             Self::Fan => [t + 1, t + 2, 0],
         }
@@ -80,7 +85,8 @@ pub struct Primitive {
     pub material: usize,
     /// Box of all finite vertex positions, in object space.
     pub bounds: Bounds,
-    /// Length of the longest triangle edge in object space, or an upper bound of it.
+    /// Length of the longest triangle edge in object space, or an upper bound of it. Of points the
+    /// diameter of their discs.
     pub longest_edge: f64,
     /// True if no interpolated normal can be near zero ([`Primitive::normals_agree`]). False is
     /// always safe.
@@ -101,6 +107,11 @@ impl Primitive {
             self.indices
                 .map_or(self.positions.count, |indices| indices.count),
         )
+    }
+
+    /// Are they points?
+    pub fn is_points(&self) -> bool {
+        self.topology == Topology::Points
     }
 
     /// The three vertex indices of triangle `t`.
@@ -312,7 +323,10 @@ impl Scene {
         self.instances.len() > MANY_INSTANCES
             && self.primitives.len() <= MOST_SHAPES
             && self.particle_discs.is_none()
-            && self.primitives.iter().all(|p| p.deformation.is_none())
+            && self
+                .primitives
+                .iter()
+                .all(|p| p.deformation.is_none() && !p.is_points())
     }
 
     /// The index of the variant of materials called `name`. `#2` is the variant at index 2, under

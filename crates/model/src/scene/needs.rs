@@ -20,7 +20,7 @@ use super::{
 };
 use crate::{
     accuracy::Skinning,
-    math::{GUARD_BAND, SUBPIXEL_BITS},
+    math::{GUARD_BAND, MAX_POINT_RADIUS_PX, SUBPIXEL_BITS},
 };
 
 /// What a scene in a view requires of the kernels.
@@ -72,6 +72,8 @@ pub struct Needs {
     pub morph_targets: bool,
     /// Some triangles are particle discs.
     pub particle_discs: bool,
+    /// Some primitives are points.
+    pub points: bool,
     /// How joints are blended, where any deform a mesh.
     pub skinning: Option<Skinning>,
     /// Clips may move parts of the scene.
@@ -170,6 +172,7 @@ impl Needs {
                     .is_some_and(|deform| deform.weights.iter().any(|weight| *weight != 0.0))
             }),
             particle_discs: scene.particle_discs.is_some(),
+            points: drawn().any(Primitive::is_points),
             skinning: draws
                 .iter()
                 .find_map(|draw| Some(draw.deform.as_ref()?.joint_transforms.as_ref()?.skinning())),
@@ -370,6 +373,19 @@ fn keeps_normals(draw: &Draw) -> bool {
     largest > 0.0 && (m * (1.0 / largest)).determinant().abs() > 1e-9
 }
 
+/// Upper bound of the extent of the triangles about a draw's points, in pixels. Points are not
+/// clipped.
+fn point_px(bounds: &Bounds, draw: &Draw) -> f64 {
+    let corners = bounds.corners().map(|corner| draw.clip_point(corner).w);
+    let nearest = corners.into_iter().fold(f64::INFINITY, f64::min);
+    let radius = match nearest > 0.0 {
+        true => f64::from(draw.point_radius_px) / nearest,
+        false => MAX_POINT_RADIUS_PX,
+    };
+    // Two roots of 3 about the radius, with what is added to it.
+    3.5 * radius.clamp(1.0, MAX_POINT_RADIUS_PX) + 1.0
+}
+
 /// Upper bound of the extent of a draw's triangles in pixels; infinite if one may need clipping.
 ///
 /// On a segment of object-space length l, clip x changes by at most |row 0| l and w by |row 3| l,
@@ -379,6 +395,9 @@ fn largest_px(primitive: &Primitive, draw: &Draw, view: &View) -> f64 {
     let bounds = draw.object_bounds(primitive);
     if bounds.is_empty() {
         return 0.0;
+    }
+    if primitive.is_points() {
+        return point_px(&bounds, draw);
     }
     // No edge of a deformed mesh is longer than its box.
     let longest_edge = if draw.deform.is_some() {

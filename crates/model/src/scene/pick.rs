@@ -47,20 +47,25 @@ enum Sides {
 struct Ray {
     from: DVec3,
     along: DVec3,
+    /// Side of a pixel at the eye and what a distance of 1 adds, meters.
+    pixel_m: [f64; 2],
 }
 
 impl Ray {
     fn through(view: &View, screen: DVec2) -> Self {
         let aside =
             view.ndc_axes[0] * (2.0 * screen.x - 1.0) + view.ndc_axes[1] * (1.0 - 2.0 * screen.y);
+        let pixel_m = view.ndc_axes[1].length() * 2.0 / f64::from(view.height.max(1));
         match view.linear_depth_m {
             None => Self {
                 from: view.eye,
                 along: view.forward + aside,
+                pixel_m: [0.0, pixel_m],
             },
             Some(_) => Self {
                 from: view.eye + aside,
                 along: view.forward,
+                pixel_m: [pixel_m, 0.0],
             },
         }
     }
@@ -75,7 +80,11 @@ impl Ray {
             };
             draw.world_from_object.transform_point3(position)
         };
+        let radius = f64::from(draw.point_radius_px);
         let hit = |triangle: u32| {
+            if primitive.is_points() {
+                return self.passes(corner(primitive.corners(scene, triangle)[0]), radius);
+            }
             let (distance, is_front) =
                 self.meets(primitive.corners(scene, triangle).map(corner))?;
             let is_shown = sides == Sides::Both || draw.double_sided || is_front != draw.mirrored;
@@ -85,6 +94,16 @@ impl Ray {
             .into_par_iter()
             .filter_map(hit)
             .reduce_with(f64::min)
+    }
+
+    /// Distance along the ray to a point whose disc it meets, which is at least two pixels wide and
+    /// has so many pixels as its radius at a distance of 1.
+    fn passes(&self, point: DVec3, radius: f64) -> Option<f64> {
+        let t = (point - self.from).dot(self.along) / self.along.length_squared();
+        let [at_eye, further] = self.pixel_m;
+        let reach = (radius * (at_eye + further)).max(at_eye + further * t);
+        let aside = point - self.from - self.along * t;
+        (t > 0.0 && aside.length_squared() <= reach * reach).then_some(t)
     }
 
     /// Distance along the ray to a triangle, and whether its corners run counterclockwise as seen

@@ -7,6 +7,7 @@ use super::{
         render::{
             draw_order::limited,
             mask::is_masked,
+            point::Shown,
             sample_rules::{DrawLimit, SampleTests},
             sample_setup::{effects_with_setup, mask_records},
             snap::half_size,
@@ -222,9 +223,26 @@ impl EndToEnd<'_> {
         let clipped = &self.own.clipped_triangles;
         let fan =
             clipped.partition_point(|t| t.parent < id)..clipped.partition_point(|t| t.parent <= id);
+        let (mut records, mut reach) = (records, reach);
+        let point = |geometry: &Geometry, index: usize| {
+            let bits = geometry.subpixel_bits;
+            Shown::of(&geometry.vertices[index], draw, bits)
+        };
+        let shown = self.shot.draws_points(draw).then(|| {
+            let [index, ..] = self.shot.corner_indices(draw, self.own, id);
+            records = [self.own.vertices[index]; 3];
+            let own = point(self.own, index);
+            if own != point(self.adapter, index) {
+                reach += pixel;
+            }
+            own
+        });
         let drawn = match self.shot.stack.shape() {
-            Shape::Triangles if self.own.particle_discs.contains(&id) => Drawn::Disc,
-            Shape::Triangles => Drawn::Inside,
+            Shape::Triangles => match shown {
+                Some(shown) => Drawn::Point(shown),
+                None if self.own.particle_discs.contains(&id) => Drawn::Disc,
+                None => Drawn::Inside,
+            },
             Shape::Boxes => Drawn::Box,
             Shape::Points => Drawn::Points(self.shot.stack.point_radius().into()),
         };

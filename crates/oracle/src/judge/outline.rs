@@ -1,6 +1,6 @@
 //! Outlines of triangles on the screen, and what may change at a sample when their vertices move.
 
-use super::super::arithmetic::edge::doubled_area;
+use super::super::{arithmetic::edge::doubled_area, render::point::Shown};
 use crate::{effects::hooks::ROUNDING, frame::SnappedVertex, scene::view::View};
 
 /// What of a triangle is drawn.
@@ -13,6 +13,8 @@ pub enum Drawn {
     Box,
     /// Discs of this radius about the corners, in sub-pixel units, each at the depth of its corner.
     Points(i64),
+    /// A point, which is all three corners.
+    Point(Shown),
 }
 
 /// A triangle on the screen, or the clipped triangles in its place.
@@ -61,6 +63,7 @@ impl Outline {
                     at.box_distance(corners).abs() <= reach
                         || at.box_distance(corners) < 0.0 && may_vanish(corners, reach)
                 }
+                Drawn::Point(shown) => (at.distance_from(&corners[0], shown)).abs() <= reach,
                 Drawn::Points(radius) => corners.iter().any(|corner| {
                     let outside = at.distance(corner, corner) - radius as f64;
                     outside.abs() <= reach || outside < 0.0 && may_vanish(corners, reach)
@@ -84,6 +87,8 @@ impl Outline {
                         .iter()
                         .fold(0.0, |nearest, corner| corner.depth.max(nearest)),
                 )),
+                Drawn::Point(shown) => (at.distance_from(&corners[0], shown) <= at.unit)
+                    .then(|| around(corners[0].depth)),
                 Drawn::Points(radius) => {
                     let under = corners
                         .iter()
@@ -153,6 +158,15 @@ impl SamplePosition {
             0.0
         };
         libm::hypot(px - t * dx, py - t * dy)
+    }
+
+    /// Distance from what is shown of a point, negative inside.
+    fn distance_from(&self, point: &SnappedVertex, shown: Shown) -> f64 {
+        let (dx, dy) = (self.x - f64::from(point.x), self.y - f64::from(point.y));
+        match shown {
+            Shown::Disc(radius) => libm::hypot(dx, dy) - radius as f64,
+            Shown::Pixel => dx.abs().max(dy.abs()) - self.unit / 2.0,
+        }
     }
 
     /// Distance to the bounding box of a triangle's corners, negative inside.

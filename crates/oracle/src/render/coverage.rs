@@ -273,6 +273,11 @@ impl OrientedTriangle {
             depth: depth.into(),
             is_interpolated: false,
         };
+        if let Some((point, shown)) = self.point {
+            return shown
+                .covers(point, [px, py], tests.unit)
+                .then(|| exact(self.corners[0].depth));
+        }
         match tests.shape {
             Shape::Triangles => {
                 if !edges.iter().all(EdgeAtSample::is_inside) {

@@ -6,8 +6,10 @@ use rayon::prelude::*;
 use super::{
     super::{arithmetic::edge::doubled_area, shot::Shot},
     clip::is_cut,
+    point::Shown,
 };
 use crate::{
+    effects::hooks::Shape,
     frame::{ClippedTriangle, Counters, Geometry, SnappedVertex, vertex_flags},
     scene::draw::{Draw, totals},
     work::{Canceled, checkpoint},
@@ -23,6 +25,8 @@ pub struct OrientedTriangle {
     pub entry: usize,
     /// The last two corners were exchanged to wind the triangle clockwise.
     pub is_turned: bool,
+    /// It is the triangle about a point: where that lies, and what of it is shown.
+    pub point: Option<([i64; 2], Shown)>,
 }
 
 impl OrientedTriangle {
@@ -33,6 +37,7 @@ impl OrientedTriangle {
             corners,
             entry: id as usize,
             is_turned: false,
+            point: None,
         }
     }
 
@@ -130,10 +135,27 @@ impl Assembly<'_> {
             self.clipped(id);
         } else if any == 0 {
             match doubled_area(&corners) {
+                // A point whose corner an effect draws shows its front.
+                0 if self.shot.scene.primitives[self.draw.primitive].is_points() => {
+                    let area = if self.draw.mirrored { 1 } else { -1 };
+                    self.oriented(id, id as usize, corners, area);
+                }
                 0 => self.counters.degenerate += 1,
                 area => self.oriented(id, id as usize, corners, area),
             }
         }
+    }
+
+    /// [`OrientedTriangle::point`]. A box is filled as that of any triangle.
+    fn point(&self, id: u32) -> Option<([i64; 2], Shown)> {
+        let Shot { stack, .. } = self.shot;
+        if !self.shot.draws_points(self.draw) || stack.shape() != Shape::Triangles {
+            return None;
+        }
+        let [index, ..] = self.shot.corner_indices(self.draw, self.geometry, id);
+        let record = &self.geometry.vertices[index];
+        let shown = Shown::of(record, self.draw, self.geometry.subpixel_bits);
+        Some(([record.x.into(), record.y.into()], shown))
     }
 
     /// Draws the clipped triangles of `parent`.
@@ -175,6 +197,7 @@ impl Assembly<'_> {
             corners,
             entry,
             is_turned: area < 0,
+            point: self.point(id),
         };
         triangle.corners = triangle.in_file_order(corners);
         self.drawn.push(triangle);

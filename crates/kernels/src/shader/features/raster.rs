@@ -347,12 +347,20 @@ const TILE_LIST: Feature = Feature {
 
 const SHAPE: Feature = Feature {
     label: |key| match key.samples.shape {
-        Shape::Triangles => String::new(),
+        Shape::Triangles => word_if(key.samples.has_points, "points"),
         Shape::Boxes => "shape=boxes".into(),
         Shape::Points => "shape=points".into(),
     },
+    variants: &[("points", |key, _| match key.samples.shape {
+        _ if !key.samples.has_points => "default",
+        Shape::Points => "corners",
+        Shape::Triangles | Shape::Boxes => "spread",
+    })],
     constants: &[
         ("SHAPE", |key, _| (key.samples.shape as u32).into()),
+        ("SHOWS_DISCS", |key, _| {
+            flag(key.samples.shape == Shape::Triangles)
+        }),
         ("INVOCATIONS_PER_TRIANGLE", |key, _| {
             key.work.invocations_per_triangle.into()
         }),
@@ -462,6 +470,12 @@ const SAMPLE_EFFECTS: Feature = Feature {
         }),
         ("sample_test", |key, _| {
             step_if(key.has_discs(), "particle_disc")
+        }),
+        ("sample_test", |key, _| {
+            step_if(
+                key.samples.has_points && key.samples.shape == Shape::Triangles,
+                "point",
+            )
         }),
         ("sample_test", |key, _| {
             step_if(key.samples.has_mask, "alpha_mask")

@@ -17,6 +17,7 @@ mod plates;
 mod query;
 mod shapes;
 mod still_life;
+mod survey;
 mod teapot;
 mod tentacle;
 mod town;
@@ -298,6 +299,16 @@ pub const BUILTINS: &[Builtin] = &[
             SEED,
         ],
         build: leaves::build,
+    },
+    Builtin {
+        name: "survey",
+        about: "a town as a scanner has it: points with colors and normals, in classes",
+        params: &[
+            whole("points", "number of points", 60_000.0, 100.0..=10_000_000.0),
+            whole("houses", "number of houses", 24.0, 1.0..=400.0),
+            SEED,
+        ],
+        build: survey::build,
     },
     Builtin {
         name: "near",

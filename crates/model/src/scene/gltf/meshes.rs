@@ -5,7 +5,7 @@ use std::{
     ops::Range,
 };
 
-use glam::DMat4;
+use glam::{DMat4, DVec3};
 
 use super::{
     buffers::{Buffers, FLOAT, FLOAT_OR_UNORM, Format, QUANTIZED, QUANTIZED_NORMALS, SceneWriter},
@@ -25,7 +25,7 @@ use crate::{
         deformation::Deformation,
         material::{Material, TEXTURE_SLOTS, TextureSlot},
         model::{Primitive, Scene, Topology},
-        tangents,
+        point_cloud, tangents,
     },
     work::checkpoint,
 };
@@ -154,7 +154,7 @@ impl<'a> Loader<'a> {
     ) -> Result<(), LoadError> {
         let notes = self.buffers.notes;
         let Some(topology) = about.topology else {
-            notes.add(|| format!("{name} is skipped: points and lines are not drawn"));
+            notes.add(|| format!("{name} is skipped: lines are not drawn"));
             return Ok(());
         };
         let Some(&positions) = about.attributes.get("POSITION") else {
@@ -207,7 +207,7 @@ impl<'a> Loader<'a> {
             indices,
             positions,
             normals: normals.unwrap_or(positions),
-            is_faceted: normals.is_none(),
+            is_faceted: normals.is_none() && topology != Topology::Points,
             colors,
             texcoords,
             tangents: None,
@@ -226,7 +226,26 @@ impl<'a> Loader<'a> {
         checkpoint.advance(step)?;
         measure(&self.writer.scene, &mut primitive).map_err(at("POSITION"))?;
         checkpoint.advance(step)?;
-        if normals.is_none() {
+        if primitive.is_points() {
+            let at_vertex = |vertex| {
+                DVec3::from(
+                    primitive
+                        .position(&self.writer.scene, vertex)
+                        .map(f64::from),
+                )
+            };
+            primitive.longest_edge =
+                point_cloud::diameter((0..count).map(at_vertex), &primitive.bounds);
+            if normals.is_none() {
+                // One for all: a point without a normal faces the viewer.
+                let none = self.writer.append_vectors(1, [[0.0; 3]].into_iter());
+                primitive.normals = Accessor {
+                    stride: 0,
+                    count,
+                    ..none.map_err(at("NORMAL"))?
+                };
+            }
+        } else if normals.is_none() {
             let smooth = smooth_normals(&self.writer.scene, &primitive)?;
             primitive.normals = self
                 .writer

@@ -21,6 +21,7 @@ use crate::{
         material::Material,
         memory::MemoryBudget,
         model::{Instance, NamedNode, Primitive, Scene, Topology},
+        point_cloud::PointCloud,
     },
     work::checkpoint,
 };
@@ -93,6 +94,8 @@ pub struct Kind {
     pub has_normals: bool,
     pub has_colors: bool,
     pub has_texcoords: bool,
+    /// Its vertices are points, which no face has.
+    pub is_points: bool,
 }
 
 /// Faces of one kind.
@@ -107,6 +110,19 @@ pub struct Part {
 }
 
 impl Part {
+    fn push(&mut self, vertex: Vertex) {
+        self.positions.push(vertex.position);
+        if self.kind.has_normals {
+            self.normals.push(vertex.normal);
+        }
+        if self.kind.has_colors {
+            self.colors.push(vertex.color);
+        }
+        if self.kind.has_texcoords {
+            self.texcoords.push(vertex.texcoord);
+        }
+    }
+
     /// Gives every vertex the normal that `normal` has for its key.
     pub fn set_normals(&mut self, normal: impl Fn([u32; 4]) -> Option<[f32; 3]>) {
         for (&key, &vertex) in &self.known {
@@ -234,6 +250,23 @@ impl Builder {
         Ok(())
     }
 
+    /// Adds a point to a part of points.
+    pub fn point(&mut self, part: usize, point: Vertex) -> Result<(), LoadError> {
+        self.triangles += 1;
+        self.vertices += 1;
+        let most = self.room.limits.vertices.min(self.room.limits.triangles);
+        if self.vertices.max(self.triangles) > most {
+            return Err(self
+                .room
+                .limits
+                .exceeded("the model has as many points or more", most));
+        }
+        self.room.take(size_of::<Vertex>())?;
+        let part = &mut self.parts[part];
+        part.push(point);
+        Ok(())
+    }
+
     /// Adds a triangle.
     pub fn triangle(&mut self, part: usize, corners: [Vertex; 3]) -> Result<(), LoadError> {
         self.triangles += 1;
@@ -267,16 +300,7 @@ impl Builder {
         }
         self.room.take(size_of::<Vertex>() + TABLE_BYTES)?;
         let index = part.positions.len() as u32;
-        part.positions.push(vertex.position);
-        if part.kind.has_normals {
-            part.normals.push(vertex.normal);
-        }
-        if part.kind.has_colors {
-            part.colors.push(vertex.color);
-        }
-        if part.kind.has_texcoords {
-            part.texcoords.push(vertex.texcoord);
-        }
+        part.push(vertex);
         part.known.insert(vertex.key, index);
         Ok(index)
     }
@@ -306,7 +330,7 @@ impl Builder {
         let mut plain = HashMap::new();
         let center = far_center(parts.iter());
         for part in parts {
-            if !part.indices.is_empty() {
+            if !part.indices.is_empty() || part.kind.is_points {
                 let own = || far_center(std::iter::once(&part));
                 let center = center.or_else(own).unwrap_or_default();
                 add(part, center, &limits, &mut scene, &mut plain, &notes)?;
@@ -376,6 +400,24 @@ fn add(
         .map(|position| (DVec3::from(position) - center).as_vec3().to_array())
         .collect();
     let vertices = positions.len();
+    if kind.is_points {
+        let cloud = PointCloud {
+            positions,
+            normals,
+            colors,
+        };
+        let bytes = &mut scene.vertex_bytes;
+        let primitive = cloud.primitive("points", kind.material, |added| {
+            append(limits, bytes, added)
+        })?;
+        let instance = Instance {
+            named_node: kind.node,
+            ..Instance::fixed(scene.primitives.len(), DMat4::from_translation(center))
+        };
+        scene.instances.push(instance);
+        scene.primitives.push(primitive);
+        return Ok(());
+    }
     let mut stored = |bytes: &[u8]| append(limits, &mut scene.vertex_bytes, bytes);
     let positions_at = stored(bytemuck::cast_slice(&positions))? as usize;
     drop(positions);

@@ -1,4 +1,4 @@
-//! Loaders of OBJ with its MTL, of STL and of PLY, for untrusted files.
+//! Loaders of OBJ with its MTL, of STL, PLY, XYZ and LAS, for untrusted files.
 //!
 //! What the formats allow is drawn as far as it is supported. A part that breaks them (a line, a
 //! face, a material, a texture) is left out and the rest is kept, with one sentence for each kind
@@ -13,12 +13,14 @@ mod beside;
 mod builder;
 mod colors;
 mod findings;
+mod las;
 mod mtl;
 mod obj;
 mod ply;
 mod polygons;
 mod stl;
 mod stream;
+mod xyz;
 
 use super::gltf::{LoadError, ReadFile, Source, limits::Limits, other_file};
 use crate::scene::{memory::MemoryBudget, model::Scene};
@@ -27,9 +29,11 @@ use crate::scene::{memory::MemoryBudget, model::Scene};
 /// files beside the model.
 pub type LoadModel = fn(&dyn Source, MemoryBudget, &mut ReadFile) -> Result<Scene, LoadError>;
 
+pub use las::load as load_las;
 pub use obj::load as load_obj;
 pub use ply::load as load_ply;
 pub use stl::load as load_stl;
+pub use xyz::load as load_xyz;
 
 /// The first bytes of a model.
 ///

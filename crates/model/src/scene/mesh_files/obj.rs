@@ -426,6 +426,7 @@ impl Faces<'_> {
             has_normals: has_normals || is_smooth,
             has_colors: !lists.colors.is_empty(),
             has_texcoords: is_textured && has_texcoords,
+            is_points: false,
         };
         let first = DVec3::from(position(&corners[0]));
         let edge = |corner: &Corner| DVec3::from(position(corner)) - first;

@@ -97,6 +97,7 @@ impl Reader {
             has_normals: false,
             has_colors,
             has_texcoords: false,
+            is_points: false,
         }
     }
 

@@ -203,7 +203,7 @@ pub struct Primitive {
     /// Accessors by the names of attributes.
     pub attributes: BTreeMap<String, usize>,
     pub indices: Option<usize>,
-    /// `None`: points or lines.
+    /// `None`: lines.
     pub topology: Option<Topology>,
     pub material: Option<usize>,
     /// Materials by variants.

@@ -196,7 +196,8 @@ fn primitive(lists: &Lists, mut part: Element) -> Part<Primitive> {
         attributes,
         indices: read.indices.map(|index| index.value()),
         topology: match part.known("mode", read.mode, VALID_MODES)? {
-            Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip => None,
+            Mode::Points => Some(Topology::Points),
+            Mode::Lines | Mode::LineLoop | Mode::LineStrip => None,
             Mode::Triangles => Some(Topology::List),
             Mode::TriangleStrip => Some(Topology::Strip),
             Mode::TriangleFan => Some(Topology::Fan),

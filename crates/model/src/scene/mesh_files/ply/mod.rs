@@ -104,21 +104,20 @@ pub fn load(
             }
         }
     }
-    let Reader {
-        builder,
-        findings,
-        vertices,
-        ..
-    } = reader;
-    let points = vertices.positions.len();
-    drop(vertices);
-    findings.tell(&notes);
     let has_faces = header
         .elements
         .iter()
         .any(|element| element.count > 0 && ["face", "tristrips"].contains(&element.name.as_str()));
+    // Where all faces are broken, that is said.
+    if !has_faces || !reader.builder.parts.is_empty() {
+        reader.loose_points()?;
+    }
+    let Reader {
+        builder, findings, ..
+    } = reader;
+    findings.tell(&notes);
     builder.finish(notes, has_faces, || {
-        format!("it has {points} points and no faces; export it with faces")
+        "it has no points and no faces".to_owned()
     })
 }
 
@@ -130,6 +129,8 @@ struct Vertices {
     normals: Vec<[f32; 3]>,
     colors: Vec<[u16; 4]>,
     texcoords: Vec<[f32; 2]>,
+    /// Those that a face has.
+    of_faces: Vec<bool>,
 }
 
 /// Where an element has a color, and the value of its channels that are full.
@@ -281,6 +282,7 @@ impl Reader {
             has_normals: !vertices.normals.is_empty(),
             has_colors: paint.is_some() || !vertices.colors.is_empty(),
             has_texcoords: is_textured && has_texcoords,
+            is_points: false,
         };
         self.builder.widen(corners.len())?;
         self.face.clear();
@@ -293,6 +295,9 @@ impl Reader {
                 return Ok(());
             }
             let at = index as usize;
+            self.vertices.of_faces.resize(count, false);
+            self.vertices.of_faces[at] = true;
+            let vertices = &self.vertices;
             let mut vertex = Vertex::at([at as u32, NONE, NONE, 0], vertices.positions[at]);
             is_placed &= vertex.position.iter().all(|value| value.is_finite());
             if kind.has_normals {
@@ -322,6 +327,34 @@ impl Reader {
             let place = || format!("face {row}");
             self.builder
                 .face(part, &mut self.face, &mut self.findings, place)?;
+        }
+        Ok(())
+    }
+
+    /// Adds the vertices that no face has.
+    fn loose_points(&mut self) -> Result<(), LoadError> {
+        let vertices = std::mem::take(&mut self.vertices);
+        let is_loose = |at: usize| !vertices.of_faces.get(at).copied().unwrap_or(false);
+        let kind = Kind {
+            node: None,
+            material: 0,
+            has_normals: !vertices.normals.is_empty(),
+            has_colors: !vertices.colors.is_empty(),
+            has_texcoords: false,
+            is_points: true,
+        };
+        for (at, &position) in vertices.positions.iter().enumerate() {
+            if is_loose(at) && position.iter().all(|value| value.is_finite()) {
+                let mut point = Vertex::at([at as u32, NONE, NONE, 0], position);
+                if kind.has_normals {
+                    point.normal = vertices.normals[at];
+                }
+                if kind.has_colors {
+                    point.color = vertices.colors[at];
+                }
+                let part = self.builder.part(kind)?;
+                self.builder.point(part, point)?;
+            }
         }
         Ok(())
     }

@@ -1,0 +1,141 @@
+// Points: what triangles are where some primitives are points. A point is a triangle whose corners are one. It is drawn as a triangle about
+// that, whose corners all have its depth. Of that its disc is shown, or where the disc is smaller than the least one, which holds a sample
+// wherever it lies, the pixel in which the point lies. Integers decide.
+// Chosen by the scene, and by the effect that draws corners as discs.
+//
+// The triangle that is drawn.
+//@ declare fn triangle_spread(t: Triangle) -> Triangle
+// The sign of its area on the screen; a point shows its front.
+//@ declare fn triangle_orientation(t: Triangle) -> i32
+// The box of what is shown of a small one, in units, given that of its corners.
+//@ declare fn triangle_box(t: Triangle, corners: vec4i) -> vec4i
+// Is it no point, or does it show at the sample of a pixel?
+//@ may declare fn point_covers(t: Triangle, pixel: vec2i) -> bool
+
+//@ variant default
+// No primitive is points.
+//@ use lib/fixed
+//@ use lib/triangle
+
+fn triangle_spread(t: Triangle) -> Triangle {
+    return t;
+}
+
+fn triangle_orientation(t: Triangle) -> i32 {
+    return fixed_sign(fixed_edge(vertex_at(t.a), vertex_at(t.b), vertex_at(t.c)));
+}
+
+fn triangle_box(t: Triangle, corners: vec4i) -> vec4i {
+    return corners;
+}
+
+//@ variant corners
+// The corners of triangles are drawn, and those of points.
+//@ use lib/fixed
+//@ use lib/triangle
+//@ use glue/draws
+//@ use variants/draw_records
+
+fn triangle_spread(t: Triangle) -> Triangle {
+    return t;
+}
+
+fn triangle_orientation(t: Triangle) -> i32 {
+    if draw_topology(t.draw) == TOPOLOGY_POINTS { return select(-1, 1, (draws[t.draw].flags & DRAW_MIRRORED) != 0u); }
+    return fixed_sign(fixed_edge(vertex_at(t.a), vertex_at(t.b), vertex_at(t.c)));
+}
+
+fn triangle_box(t: Triangle, corners: vec4i) -> vec4i {
+    return corners;
+}
+
+//@ variant spread
+//@ use lib/fixed
+//@ use lib/triangle
+//@ use glue/draws
+//@ use variants/draw_records
+
+// Of the triangle about a point its disc is shown.
+override SHOWS_DISCS: bool = true;
+
+fn triangle_is_point(draw: u32) -> bool {
+    return draw_topology(draw) == TOPOLOGY_POINTS;
+}
+
+// Radius of the largest disc, in pixels.
+const POINT_MAX_PX = 32u;
+
+// Radius of the least disc in units: half the diagonal of a pixel, rounded up.
+fn point_least() -> u32 {
+    return (182u * u32(grid_unit()) + 255u) >> 8u;
+}
+
+// The radius of a draw's discs where 1/w is `inv_w`, in units, rounded down: the product of two floats, exactly.
+fn point_radius(draw: u32, inv_w: u32) -> u32 {
+    let most = POINT_MAX_PX << SUBPIXEL_BITS;
+    let factors = vec2u(bitcast<u32>(draw_point_radius(draw)), inv_w);
+    let exponents = factors >> vec2u(23u);
+    if exponents.x == 0u || exponents.y == 0u { return 0u; }
+    let significands = (factors & vec2u(0x7fffffu)) | vec2u(0x800000u);
+    let product = fixed_umul(significands.x, significands.y);
+    // Sixteen bits of 46 are cut off here.
+    let high = (product.hi << 16u) | (product.lo >> 16u);
+    let shift = 284 - i32(exponents.x + exponents.y + SUBPIXEL_BITS);
+    if shift >= 32 { return 0u; }
+    if shift < 0 { return most; }
+    return min(high >> u32(shift), most);
+}
+
+// The triangle is one unit farther away than its disc is wide, or touches the least one where that stands for the pixel.
+fn triangle_spread(t: Triangle) -> Triangle {
+    if !triangle_is_point(t.draw) { return t; }
+    let record = t.a;
+    let radius = point_radius(t.draw, record.w);
+    let inner = i32(select(radius + 1u, point_least(), radius < point_least()));
+    // At least as wide as a root of 3 says, so that the sides do not cut the disc.
+    let half = ((inner * 1774) >> 10u) + 1;
+    let aside = select(half, -half, (draws[t.draw].flags & DRAW_MIRRORED) != 0u);
+    let p = vertex_at(record);
+    // What would reach out of the guard band is left out, as if it were clipped.
+    let is_out = max(abs(p.x), abs(p.y)) > 8388607 - 2 * inner;
+    let flags = (record.x & 255u) | select(0u, VERTEX_LEFT, is_out);
+    let x = vec3i(p.x - aside, p.x + aside, p.x);
+    let y = vec3i(p.y + inner, p.y + inner, p.y - 2 * inner);
+    let xs = (bitcast<vec3u>(x) << vec3u(8u)) | vec3u(flags);
+    let ys = bitcast<vec3u>(y) << vec3u(8u);
+    return Triangle(
+        vec4u(xs.x, ys.x, record.zw), vec4u(xs.y, ys.y, record.zw), vec4u(xs.z, ys.z, record.zw), t.id, t.draw, t.entry, t.outline);
+}
+
+// Where the triangle about a point has the point, and how far its sides are away.
+fn point_of(t: Triangle) -> vec3i {
+    let low = vertex_at(t.a);
+    let top = vertex_at(t.c);
+    let inner = (low.y - top.y) / 3;
+    return vec3i(top.x, low.y - inner, inner);
+}
+
+fn point_covers(t: Triangle, pixel: vec2i) -> bool {
+    if !triangle_is_point(t.draw) { return true; }
+    let point = point_of(t);
+    if point.z == i32(point_least()) { return all((point.xy >> vec2u(SUBPIXEL_BITS)) == pixel); }
+    let radius = u32(point.z - 1);
+    let d = vec2u(abs(grid_sample(pixel) - point.xy));
+    if max(d.x, d.y) > radius { return false; }
+    // The squares of a finer grid exceed a word.
+    if SUBPIXEL_BITS > 8u {
+        return !fixed_is_less(fixed_umul(radius, radius), fixed_add(fixed_umul(d.x, d.x), fixed_umul(d.y, d.y)));
+    }
+    return d.x * d.x + d.y * d.y <= radius * radius;
+}
+
+fn triangle_orientation(t: Triangle) -> i32 {
+    return fixed_sign(fixed_edge(vertex_at(t.a), vertex_at(t.b), vertex_at(t.c)));
+}
+
+// Boxes are not narrowed.
+fn triangle_box(t: Triangle, corners: vec4i) -> vec4i {
+    if !SHOWS_DISCS || !triangle_is_point(t.draw) { return corners; }
+    let point = point_of(t);
+    return vec4i(point.xy - point.z, point.xy + point.z);
+}
