@@ -22,6 +22,7 @@ const ORDER: &[(&str, &[&str])] = &[
         "crates/oracle",
         &[
             "arithmetic",
+            "point",
             "perturbation",
             "shot",
             "budget",

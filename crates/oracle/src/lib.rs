@@ -8,7 +8,7 @@
 //!
 //! Imports run one way, from each of these to those before it:
 //!
-//! * `arithmetic`, `perturbation`, `shot`: exact arithmetic, and what a picture shows
+//! * `arithmetic`, `perturbation`, `point`, `shot`: exact arithmetic, and what a picture shows
 //! * `budget`: how much memory a picture may take, and how many positions
 //! * `render`: draws exact pictures
 //! * `bounds`: how far an f32 renderer may be from them
@@ -26,6 +26,7 @@ mod bounds;
 mod budget;
 mod judge;
 mod perturbation;
+mod point;
 mod probe;
 mod probe_text;
 mod render;

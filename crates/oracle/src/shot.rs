@@ -1,6 +1,6 @@
 //! What a picture shows, and how global triangle ids lead to draws and corner records.
 
-use super::render::point;
+use super::point;
 use crate::{
     effects::{
         Stack,

@@ -4,10 +4,10 @@
 use super::{
     super::{
         bounds::coverage::{BoundedCoverage, cover_claims},
+        point::Shown,
         render::{
             draw_order::limited,
             mask::is_masked,
-            point::Shown,
             sample_rules::{DrawLimit, SampleTests},
             sample_setup::{effects_with_setup, mask_records},
             snap::half_size,

@@ -1,6 +1,6 @@
 //! Outlines of triangles on the screen, and what may change at a sample when their vertices move.
 
-use super::super::{arithmetic::edge::doubled_area, render::point::Shown};
+use super::super::{arithmetic::edge::doubled_area, point::Shown};
 use crate::{effects::hooks::ROUNDING, frame::SnappedVertex, scene::view::View};
 
 /// What of a triangle is drawn.

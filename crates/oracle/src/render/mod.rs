@@ -15,7 +15,6 @@ pub mod triangles;
 pub mod coverage;
 pub mod draw_order;
 pub mod mask;
-pub mod point;
 pub mod sample_rules;
 pub mod sample_setup;
 pub mod screen;

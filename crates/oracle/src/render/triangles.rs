@@ -4,9 +4,8 @@
 use rayon::prelude::*;
 
 use super::{
-    super::{arithmetic::edge::doubled_area, shot::Shot},
+    super::{arithmetic::edge::doubled_area, point::Shown, shot::Shot},
     clip::is_cut,
-    point::Shown,
 };
 use crate::{
     effects::hooks::Shape,
