@@ -127,7 +127,7 @@ fn a_light_is_the_sun_of_its_direction_with_the_strength_that_its_formula_gives(
         let light = SceneLight {
             name: String::new(),
             kind,
-            light: [9.0, 6.0, 3.0],
+            light: [0.9, 0.6, 0.3],
             range_m,
             world_from_light: down,
             node: None,
@@ -136,7 +136,7 @@ fn a_light_is_the_sun_of_its_direction_with_the_strength_that_its_formula_gives(
     };
     let sun = |strength: f64| {
         let mut stack = stack(&["studio"]);
-        let [red, green, blue] = [9.0, 6.0, 3.0].map(|v| v * strength / std::f64::consts::PI);
+        let [red, green, blue] = [0.9, 0.6, 0.3].map(|v| v * strength / std::f64::consts::PI);
         stack.0[0]
             .set("sun", &[red, green, blue, 1.0])
             .set("sun_direction", &[0.6, 0.8, 0.0])
