@@ -335,13 +335,13 @@ fn far_camera(rng: &mut Rng, bounds: &Bounds) -> Camera {
             height_m: radius * rng.real(0.5, 3.0),
         }
     } else {
-        let least = Setting::find("camera.fov_y_deg")
+        let [least, most] = Setting::find("camera.fov_y_deg")
             .expect("a setting")
             .param
-            .hard[0];
+            .hard;
         let fitting = (2.0 * radius / distance).atan().to_degrees() * rng.real(1.0, 3.0);
         Projection::Perspective {
-            fov_y_deg: fitting.max(least),
+            fov_y_deg: fitting.clamp(least, most),
         }
     };
     Camera {
