@@ -203,7 +203,7 @@ impl Code {
             let one = One([a, b, c], &mut word);
             match self.precision {
                 Precision::Double => evaluate::<false>(op, one),
-                _ => evaluate::<true>(op, one),
+                Precision::Single | Precision::Strict => evaluate::<true>(op, one),
             }
             return self.constant(word);
         }

@@ -130,7 +130,9 @@ impl Program {
                 let (operands, mut result) = ([i.a, i.b, i.c].map(word), Word::ZERO);
                 match self.precision {
                     Precision::Double => evaluate::<false>(i.op, One(operands, &mut result)),
-                    _ => evaluate::<true>(i.op, One(operands, &mut result)),
+                    Precision::Single | Precision::Strict => {
+                        evaluate::<true>(i.op, One(operands, &mut result))
+                    }
                 }
                 registers.alike[i.d as usize] = result;
             }
@@ -150,7 +152,7 @@ impl Program {
         let all = u64::MAX >> (LANES - count.clamp(1, LANES));
         match self.precision {
             Precision::Double => self.execute::<false>(registers, all, host),
-            _ => self.execute::<true>(registers, all, host),
+            Precision::Single | Precision::Strict => self.execute::<true>(registers, all, host),
         }
     }
 

@@ -120,7 +120,7 @@ pub fn number_ui<N: Numeric>(
         .update_while_editing(false)
         .custom_parser(move |text| {
             // What is shown is rounded; to leave it alone changes nothing.
-            let is_shown = |number: f64| (number - before).abs() < 0.5 * 0.1f64.powi(3);
+            let is_shown = |number: f64| (number - before).abs() < 0.0005;
             parse_quotient(text).map(|number| if is_shown(number) { before } else { number })
         })
         .suffix(unit);

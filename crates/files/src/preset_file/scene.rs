@@ -106,7 +106,7 @@ fn load_source(
             if up != UpAxis::Y {
                 let up = up.word();
                 scene.notes.push(format!(
-                    "its {up} axis is taken to be up, guessed from its format, its names and how it stands; set scene.up if another is"
+                    "its {up} axis is taken to be up, as its format, its names or how it stands suggest; set scene.up if another is"
                 ));
             }
             Ok(scene.turned_up(up).counted())

@@ -38,10 +38,11 @@ pub fn is_preset_text(text: &str) -> bool {
 
 /// Has it a key or a heading as files of presets do?
 fn is_file_text(text: &str) -> bool {
-    text.lines().map(str::trim_start).any(|line| {
+    let has_key = text.lines().map(str::trim_start).any(|line| {
         let heading = line.strip_prefix('[').and_then(|name| name.chars().next());
         line.starts_with("schema") || heading.is_some_and(|c| c.is_ascii_lowercase())
-    })
+    });
+    has_key && !text.contains(PREFIX)
 }
 
 /// Reads a pasted line, the link of a page that carries one, or the text of a preset's file; white space from a mail or
