@@ -296,6 +296,11 @@ pub fn tell(preset: &Preset, scene: &Scene, streams: &Streams) {
             "info: the file's camera {name} leaves out some of the model; --set 'scene.camera={NO_CAMERA}' shows all of it"
         ));
     }
+    if preset.view(scene, preset.output.size).precision.is_relative {
+        streams.note(
+            "info: the scene lies far from its origin, so positions are taken relative to the eye",
+        );
+    }
 }
 
 /// [`scene_of`], with the warnings.

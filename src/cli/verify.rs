@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 
 use super::{
     args::{Common, Verify},
-    backend::{Backend, scene_of},
+    backend::{Backend, scene_of, tell},
     error::{CliError, Exit},
     files::{self, Names},
     open::presets,
@@ -85,8 +85,10 @@ pub fn run(common: &Common, args: &Verify, streams: &mut Streams) -> Result<Exit
     let mut rows = Vec::new();
     for preset_file in &mut preset_files {
         bar.set_message(preset_file.id.clone());
-        let verified = scene_of(common, preset_file, streams)
-            .and_then(|scene| check(common, &options, preset_file, &scene, &mut backend));
+        let verified = scene_of(common, preset_file, streams).and_then(|scene| {
+            tell(&preset_file.preset, &scene, streams);
+            check(common, &options, preset_file, &scene, &mut backend)
+        });
         match (verified, &preset_file.preset.test) {
             (Err(error), Some(test)) if test.expects_refusal(&error.sentence()) => {
                 streams.note(&format!(
