@@ -32,7 +32,10 @@ mod palette;
 mod preparing;
 mod preset_browser;
 mod probe;
+mod random_edits;
 mod review;
+#[path = "../common/rounds.rs"]
+mod rounds;
 mod scopes;
 mod settings;
 mod sweep;

@@ -10,7 +10,7 @@ use egui_kittest::kittest::Queryable as _;
 use crate::harness::*;
 
 /// Memory of this process that does not come from files, MB.
-fn resident_mb() -> f64 {
+pub fn resident_mb() -> f64 {
     let status = std::fs::read_to_string("/proc/self/status").expect("Linux tells");
     let line = status
         .lines()
