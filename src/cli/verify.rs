@@ -85,8 +85,15 @@ pub fn run(common: &Common, args: &Verify, streams: &mut Streams) -> Result<Exit
     let mut rows = Vec::new();
     for preset_file in &mut preset_files {
         bar.set_message(preset_file.id.clone());
-        let verified = scene_of(common, preset_file, streams)
-            .and_then(|scene| check(common, &options, preset_file, &scene, &mut backend));
+        let verified = scene_of(common, preset_file, streams).and_then(|scene| {
+            for enabled in &preset_file.preset.stack.0 {
+                if let Some(why) = enabled.effect.why_idle(&scene) {
+                    let name = &enabled.effect.name;
+                    streams.note(&format!("{}: {name}: {why}", preset_file.id));
+                }
+            }
+            check(common, &options, preset_file, &scene, &mut backend)
+        });
         match (verified, &preset_file.preset.test) {
             (Err(error), Some(test)) if test.expects_refusal(&error.sentence()) => {
                 streams.note(&format!(
