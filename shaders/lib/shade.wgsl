@@ -217,5 +217,9 @@ fn shade_surface(pixel: vec2u) -> Surface {
         s.normal = -s.normal;
         s.flat_normal = -s.flat_normal;
     }
+    if has_direction && point_is_turned(t.draw, dot(s.normal, s.view)) {
+        s.normal = -s.normal;
+        s.flat_normal = -s.flat_normal;
+    }
     return shade_step(s, t, at, position);
 }

@@ -91,12 +91,13 @@ const DRAW_PRIMITIVE_SHIFT = 8u;
 override HAS_INDICES: bool = true;
 // Every draw has u32 indices.
 override U32_INDICES: bool = false;
-// No draw is a strip, a fan or points.
+// No draw is a strip, a fan, points or lines.
 override ONLY_TRIANGLE_LISTS: bool = false;
 
 const TOPOLOGY_STRIP = 1u;
 const TOPOLOGY_FAN = 2u;
 const TOPOLOGY_POINTS = 3u;
+const TOPOLOGY_LINES = 4u;
 
 // Vertex within its draw at a position of the draw's index list; an index out of range means the last vertex.
 fn index_at(draw: u32, position: u32) -> u32 {
@@ -118,6 +119,7 @@ fn triangle_vertices(draw: u32, t: u32) -> vec3u {
         if topology == TOPOLOGY_STRIP { positions = vec3u(t, t + 1u + (t & 1u), t + 2u - (t & 1u)); }
         if topology == TOPOLOGY_FAN { positions = vec3u(t + 1u, t + 2u, 0u); }
         if topology == TOPOLOGY_POINTS { positions = vec3u(t); }
+        if topology == TOPOLOGY_LINES { positions = vec3u(t & ~1u, t, t | 1u); }
     }
     return vec3u(index_at(draw, positions.x), index_at(draw, positions.y), index_at(draw, positions.z));
 }

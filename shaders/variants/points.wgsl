@@ -1,6 +1,7 @@
-// Points: what triangles are where some primitives are points. A point is a triangle whose corners are one. It is drawn as a triangle about
+// Points: what triangles are where some primitives are points or lines. A point is a triangle whose corners are one. It is drawn as a triangle about
 // that, whose corners all have its depth. Of that its disc is shown, or where the disc is smaller than the least one, which holds a sample
-// wherever it lies, the pixel in which the point lies. Integers decide.
+// wherever it lies, the pixel in which the point lies. A segment of a line is two triangles with its ends as corners, of which the sides lie half a pixel from it, along the
+// axis to which it is steeper: so it has one sample in each column or each row. Integers decide.
 // Chosen by the scene, and by the effect that draws corners as discs.
 //
 // The triangle that is drawn.
@@ -9,6 +10,8 @@
 //@ declare fn triangle_orientation(t: Triangle) -> i32
 // The box of what is shown of a small one, in units, given that of its corners.
 //@ declare fn triangle_box(t: Triangle, corners: vec4i) -> vec4i
+// Is it a point whose normal shows away from the viewer, given the cosine? Scanners do not tell the sides apart.
+//@ declare fn point_is_turned(draw: u32, toward: f32) -> bool
 // Is it no point, or does it show at the sample of a pixel?
 //@ may declare fn point_covers(t: Triangle, pixel: vec2i) -> bool
 
@@ -29,8 +32,12 @@ fn triangle_box(t: Triangle, corners: vec4i) -> vec4i {
     return corners;
 }
 
+fn point_is_turned(draw: u32, toward: f32) -> bool {
+    return false;
+}
+
 //@ variant corners
-// The corners of triangles are drawn, and those of points.
+// The corners of triangles are drawn, and those of points and lines.
 //@ use lib/fixed
 //@ use lib/triangle
 //@ use glue/draws
@@ -41,12 +48,16 @@ fn triangle_spread(t: Triangle) -> Triangle {
 }
 
 fn triangle_orientation(t: Triangle) -> i32 {
-    if draw_topology(t.draw) == TOPOLOGY_POINTS { return select(-1, 1, (draws[t.draw].flags & DRAW_MIRRORED) != 0u); }
+    if draw_topology(t.draw) >= TOPOLOGY_POINTS { return select(-1, 1, (draws[t.draw].flags & DRAW_MIRRORED) != 0u); }
     return fixed_sign(fixed_edge(vertex_at(t.a), vertex_at(t.b), vertex_at(t.c)));
 }
 
 fn triangle_box(t: Triangle, corners: vec4i) -> vec4i {
     return corners;
+}
+
+fn point_is_turned(draw: u32, toward: f32) -> bool {
+    return draw_topology(draw) == TOPOLOGY_POINTS && toward < 0.0;
 }
 
 //@ variant spread
@@ -60,6 +71,10 @@ override SHOWS_DISCS: bool = true;
 
 fn triangle_is_point(draw: u32) -> bool {
     return draw_topology(draw) == TOPOLOGY_POINTS;
+}
+
+fn point_is_turned(draw: u32, toward: f32) -> bool {
+    return triangle_is_point(draw) && toward < 0.0;
 }
 
 // Radius of the largest disc, in pixels.
@@ -86,8 +101,32 @@ fn point_radius(draw: u32, inv_w: u32) -> u32 {
     return min(high >> u32(shift), most);
 }
 
+// The triangle of a segment: its first has the first end twice, its second the second.
+fn line_spread(t: Triangle) -> Triangle {
+    let ends = vec4i(vertex_at(t.a), vertex_at(t.c));
+    let d = abs(ends.zw - ends.xy);
+    let half = grid_unit() / 2;
+    let aside = select(vec2i(half, 0), vec2i(0, half), d.x >= d.y);
+    let farthest = max(max(abs(ends.x), abs(ends.y)), max(abs(ends.z), abs(ends.w)));
+    var flags = (t.a.x | t.c.x) & 255u;
+    // What would be clipped is left out.
+    if flags != 0u || farthest > 8388607 - half { flags |= VERTEX_LEFT; }
+    let a = line_corner(t.a, ends.xy - aside, flags);
+    if ((t.id - draws[t.draw].first_triangle) & 1u) == 0u {
+        let b = line_corner(t.a, ends.xy + aside, flags);
+        return Triangle(a, b, line_corner(t.c, ends.zw + aside, flags), t.id, t.draw, t.entry, t.outline);
+    }
+    let b = line_corner(t.c, ends.zw + aside, flags);
+    return Triangle(a, b, line_corner(t.c, ends.zw - aside, flags), t.id, t.draw, t.entry, t.outline);
+}
+
+fn line_corner(end: vec4u, at: vec2i, flags: u32) -> vec4u {
+    return vec4u((bitcast<vec2u>(at) << vec2u(8u)) | vec2u(flags, 0u), end.zw);
+}
+
 // The triangle is one unit farther away than its disc is wide, or touches the least one where that stands for the pixel.
 fn triangle_spread(t: Triangle) -> Triangle {
+    if draw_topology(t.draw) == TOPOLOGY_LINES { return line_spread(t); }
     if !triangle_is_point(t.draw) { return t; }
     let record = t.a;
     let radius = point_radius(t.draw, record.w);

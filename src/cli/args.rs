@@ -18,7 +18,7 @@ use crate::{
 #[derive(Parser, Debug)]
 #[command(name = "rasterlab", version, about, long_about = LONG)]
 pub struct Cli {
-    /// A preset, a model (.glb, .gltf, .vrm, .obj, .stl, .ply, .xyz, .las) or a PNG saved by rasterlab, to open in the window
+    /// A preset, a model (.glb, .gltf, .vrm, .obj, .stl, .ply, .xyz, .pts, .las, .laz) or a PNG saved by rasterlab, to open in the window
     #[arg(value_name = "PRESET|MODEL|PICTURE.png")]
     pub open: Option<String>,
     /// Append the messages of the window's log to this file, each as a line
@@ -35,7 +35,7 @@ pub struct Cli {
 
 const LONG: &str = "An effects lab around a compute-shader rasterizer, judged by an exact oracle.\n\n\
     Without a command the window opens. A PRESET is an id or a name of the gallery (rasterlab list presets), a .toml file, \
-    a .glb, .gltf, .vrm, .obj, .stl, .ply, .xyz or .las model, a PNG saved by rasterlab, builtin:QUERY, or - for TOML from stdin.\n\n\
+    a .glb, .gltf, .vrm, .obj, .stl, .ply, .xyz, .pts, .las or .laz model, a PNG saved by rasterlab, builtin:QUERY, or - for TOML from stdin.\n\n\
     Exit codes: 0 done; 1 a comparison, check or stress case failed, a measured error exceeds its limit, or a dry run found \
     changes; 2 wrong usage, or a file that cannot be read or written; 3 no suitable adapter; 4 the device was lost.";
 

@@ -290,6 +290,11 @@ pub fn scene_of(
 /// Tells what a person should know of the scene of a picture.
 pub fn tell(preset: &Preset, scene: &Scene, streams: &Streams) {
     scene.notes.iter().for_each(|note| streams.note(note));
+    for enabled in &preset.stack.0 {
+        if let Some(why) = enabled.effect.why_idle(scene) {
+            streams.note(&format!("info: {}: {why}", enabled.effect.name));
+        }
+    }
     if let Some(camera) = preset.cropping_camera(scene) {
         let name = legible_line(&camera.name);
         streams.note(&format!(

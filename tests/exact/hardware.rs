@@ -232,7 +232,7 @@ fn strips_fans_small_indices_and_quantized_attributes_are_drawn() {
                 .collect(),
             // The ring around the vertex that faces the eye.
             Topology::Fan => ring(&corners, hub),
-            Topology::Points => unreachable!("no list here has points"),
+            Topology::Points | Topology::Lines => unreachable!("lists of triangles"),
         }
         .iter()
         .map(|&corner| u8::try_from(corner).expect("few vertices"))

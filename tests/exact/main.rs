@@ -21,6 +21,7 @@ mod hardware;
 mod instances;
 mod judge_at_extremes;
 mod oracle;
+mod points;
 mod probe;
 #[path = "../common/rounds.rs"]
 mod rounds;

@@ -86,7 +86,8 @@ const SHADERS: (usize, u64) = (178, 481_500);
 
 /// Packages in `Cargo.lock`, of all platforms. The clipboard of the system costs none: the feature `arboard` of egui-winit
 /// alone stands there already, and compiles arboard and wl-clipboard-rs with it. `clipboard` has smithay-clipboard too, with
-/// six more, for Wayland without the protocol of clipboard managers; there arboard goes through Xwayland.
+/// six more, for Wayland without the protocol of clipboard managers; there arboard goes through Xwayland. `laz` came for
+/// console_error_panic_hook, which three words of web-sys do.
 const PACKAGES: usize = 440;
 
 /// Words of the pages that people read.

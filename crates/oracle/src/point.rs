@@ -1,5 +1,6 @@
-//! Points: each is drawn as a triangle about it, of which its disc is shown, or where that is too small
-//! to hold a sample wherever it lies, the pixel in which the point lies (`docs/exactness.md` §2).
+//! Points and lines. A point is drawn as a triangle about it, of which its disc is shown, or where that is too small
+//! to hold a sample wherever it lies, the pixel in which the point lies (`docs/exactness.md` §2). A segment of a
+//! line is drawn as two triangles, whose sides lie half a pixel from it.
 
 use crate::{
     frame::{SnappedVertex, vertex_flags},
@@ -67,6 +68,36 @@ pub fn corners(record: &SnappedVertex, draw: &Draw, subpixel_bits: u32) -> [Snap
         flags,
         ..*record
     })
+}
+
+/// The corners of the first or the second triangle of a segment with these ends: of the four that lie
+/// half a pixel before and behind each end, along the axis in which the segment is shorter.
+pub fn line_corners(
+    ends: [&SnappedVertex; 2],
+    is_second: bool,
+    subpixel_bits: u32,
+) -> [SnappedVertex; 3] {
+    let half = 1 << (subpixel_bits - 1);
+    let [from, to] = ends;
+    let (dx, dy) = ((to.x - from.x).abs(), (to.y - from.y).abs());
+    let (x, y) = if dx >= dy { (0, half) } else { (half, 0) };
+    let is_out = ends
+        .iter()
+        .any(|end| end.x.abs().max(end.y.abs()) > GUARD_BAND - half);
+    let mut flags = from.flags | to.flags;
+    if is_out || flags != 0 {
+        flags |= vertex_flags::GUARD[0];
+    }
+    let corner = |end: &SnappedVertex, side: i32| SnappedVertex {
+        x: end.x + side * x,
+        y: end.y + side * y,
+        flags,
+        ..*end
+    };
+    match is_second {
+        false => [corner(from, -1), corner(from, 1), corner(to, 1)],
+        true => [corner(from, -1), corner(to, 1), corner(to, -1)],
+    }
 }
 
 #[cfg(test)]

@@ -58,13 +58,27 @@ impl<'a> Shot<'a> {
         self.scene.primitives[draw.primitive].is_points() && self.stack.shape() != Shape::Points
     }
 
+    /// The same for lines.
+    pub fn draws_lines(&self, draw: &Draw) -> bool {
+        self.scene.primitives[draw.primitive].is_lines() && self.stack.shape() != Shape::Points
+    }
+
+    /// Are corners of points and lines drawn, which have no area?
+    pub fn draws_corners(&self, draw: &Draw) -> bool {
+        self.scene.primitives[draw.primitive].is_spread() && self.stack.shape() == Shape::Points
+    }
+
     /// Corner records of triangle `id` of `draw`, in the order of the file.
     pub fn corner_records(&self, draw: &Draw, geometry: &Geometry, id: u32) -> [SnappedVertex; 3] {
         let records = self
             .corner_indices(draw, geometry, id)
             .map(|index| geometry.vertices[index]);
+        let bits = geometry.subpixel_bits;
         if self.draws_points(draw) {
-            point::corners(&records[0], draw, geometry.subpixel_bits)
+            point::corners(&records[0], draw, bits)
+        } else if self.draws_lines(draw) {
+            let is_second = (id - draw.first_triangle) % 2 == 1;
+            point::line_corners([&records[0], &records[2]], is_second, bits)
         } else {
             records
         }

@@ -19,7 +19,7 @@ pub use page::{Judged, Page, Picture};
 #[wasm_bindgen(start)]
 pub fn start() {
     std::panic::set_hook(Box::new(|panic| {
-        console_error_panic_hook::hook(panic);
+        web_sys::console::error_1(&js_sys::Error::new(&panic.to_string()));
         let _ = js_sys::Reflect::set(
             &js_sys::global(),
             &"rasterlabPanic".into(),

@@ -18,7 +18,7 @@ use web_sys::HtmlCanvasElement;
 #[wasm_bindgen(start)]
 pub fn start() {
     std::panic::set_hook(Box::new(|panic| {
-        console_error_panic_hook::hook(panic);
+        web_sys::console::error_1(&js_sys::Error::new(&panic.to_string()));
         let (place, name) = (js_sys::global(), "rasterlabPanic");
         let _ = js_sys::Reflect::set(&place, &name.into(), &panic.to_string().into());
     }));

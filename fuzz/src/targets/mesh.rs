@@ -1,10 +1,10 @@
-//! OBJ with MTL, STL and PLY models: every input is read as each of them, and is its own material
+//! OBJ with MTL, STL and PLY models, and clouds of LAS, LAZ and XYZ: every input is read as each of them, and is its own material
 //! file.
 
 use rasterlab::scene::{
     gltf::LoadError,
     memory::MemoryBudget,
-    mesh_files::{load_obj, load_ply, load_stl},
+    mesh_files::{load_las, load_obj, load_ply, load_stl, load_xyz},
 };
 
 use super::{Outcome, Target, assert_told, model::use_scene};
@@ -12,7 +12,7 @@ use crate::guard::Limit;
 
 pub const TARGET: Target = Target {
     name: "mesh",
-    about: "OBJ, MTL, STL and PLY models",
+    about: "OBJ, MTL, STL and PLY models, LAS, LAZ and XYZ clouds",
     views: &[],
     limit: Limit::new(20, 2048),
     check,
@@ -20,7 +20,7 @@ pub const TARGET: Target = Target {
 
 fn check(bytes: &[u8]) -> Outcome {
     let mut outcome = Err("it is no mesh".into());
-    for load in [load_obj, load_stl, load_ply] {
+    for load in [load_obj, load_stl, load_ply, load_las, load_xyz] {
         let read = load(&bytes, MemoryBudget::LEAST, &mut |path, _| match path
             .extension()
             .is_some_and(|extension| extension == "mtl")

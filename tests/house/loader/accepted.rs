@@ -230,18 +230,36 @@ fn cameras_of_the_file_keep_their_lens_and_place() {
 
 #[test]
 fn what_is_left_out_is_noted() {
-    let mut model = Model::square()
+    let model = Model::square()
         .set("/extensionsUsed [\"KHR_materials_clearcoat\"]\n/animations []\nA/_HEAT 0");
-    model.primitive(json!({ "attributes": { "POSITION": 0 }, "mode": 1 }));
     let scene = model.scene();
-    assert_eq!(scene.primitives.len(), 1);
-    assert_noted(&scene, "mesh \"X\" primitive 1 is skipped: lines");
     assert_noted(
         &scene,
         "the extension \"KHR_materials_clearcoat\" is not supported and is ignored",
     );
     let nothing = Model::empty().set("/nodes [{}]").scene();
     assert!(nothing.notes[0].contains("nothing to draw"));
+}
+
+#[test]
+fn lines_are_pairs_of_corners_whichever_way_they_are_joined() {
+    for (mode, wanted) in [
+        (1, "0 1, 2 3"),
+        (2, "0 1, 1 2, 2 3, 3 0"),
+        (3, "0 1, 1 2, 2 3"),
+    ] {
+        let mut model = Model::square();
+        model.primitive(json!({ "attributes": { "POSITION": 0 }, "mode": mode }));
+        let scene = model.scene();
+        let lines = &scene.primitives[1];
+        let ends = |segment| {
+            let [a, same, b] = lines.corners(&scene, 2 * segment);
+            assert_eq!(same, a);
+            format!("{a} {b}")
+        };
+        let segments: Vec<String> = (0..lines.triangle_count() / 2).map(ends).collect();
+        assert_eq!(segments.join(", "), wanted);
+    }
 }
 
 #[test]

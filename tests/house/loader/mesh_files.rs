@@ -1,14 +1,18 @@
-//! Promise: OBJ with MTL, STL, PLY, XYZ and LAS open: every form that they allow, exactly; a part that breaks
+//! Promise: OBJ with MTL, STL, PLY, XYZ, LAS and LAZ open: every form that they allow, exactly; a part that breaks
 //! them is left out with one sentence that counts; what leaves nothing to draw is refused in words.
 
-use std::path::Path;
+use std::{io::Cursor, path::Path};
 
 use glam::DVec3;
+use laz::{LasZipCompressor, LazItemRecordBuilder, LazVlr, LazVlrBuilder};
 use rasterlab::scene::{
     Scene,
     gltf::LoadError,
     memory::MemoryBudget,
-    mesh_files::{LoadModel, load_las, load_obj, load_ply, load_stl, load_xyz},
+    mesh_files::{
+        LoadCloud, LoadModel, load_las, load_las_shown, load_obj, load_ply, load_stl, load_xyz,
+        load_xyz_shown,
+    },
     model::Primitive,
     parts::parts,
     texture::Texture,
@@ -389,8 +393,10 @@ fn las(format: u8, stride: usize, points: &[([i32; 3], u8)]) -> Vec<u8> {
         point[..12].copy_from_slice(bytemuck::cast_slice(place));
         // An intensity, and where the format has a color, red.
         point[13] = 200;
-        if format == 2 {
-            point[21] = 200;
+        match format {
+            2 => point[21] = 200,
+            7 => point[31] = 200,
+            _ => {}
         }
         point[if format < 6 { 15 } else { 16 }] = *class;
         bytes.extend(point);
@@ -398,28 +404,82 @@ fn las(format: u8, stride: usize, points: &[([i32; 3], u8)]) -> Vec<u8> {
     bytes
 }
 
+/// The same file, compressed in chunks of two points.
+fn laz(las: &[u8]) -> Vec<u8> {
+    let items = LazItemRecordBuilder::default_for_point_format_id(las[104], 0);
+    let vlr = LazVlrBuilder::new(items.expect("a format"))
+        .with_fixed_chunk_size(2)
+        .build();
+    let (mut said, mut packed) = (Vec::new(), Cursor::new(Vec::new()));
+    vlr.write_to(&mut said).expect("written");
+    let mut packer = LasZipCompressor::new(&mut packed, vlr).expect("a way to compress");
+    packer.compress_many(&las[227..]).expect("compressed");
+    packer.done().expect("compressed");
+    drop(packer);
+    let mut record = vec![0; 54];
+    record[2..2 + LazVlr::USER_ID.len()].copy_from_slice(LazVlr::USER_ID.as_bytes());
+    record[18..20].copy_from_slice(&LazVlr::RECORD_ID.to_le_bytes());
+    record[20] = said.len() as u8;
+    let first = 227 + 54 + said.len();
+    let mut bytes = [&las[..227], &record, &said, packed.get_ref()].concat();
+    bytes[94] = 227;
+    bytes[96..98].copy_from_slice(&(first as u16).to_le_bytes());
+    bytes[100] = 1;
+    bytes[104] |= 0x80;
+    bytes
+}
+
 const SURVEYED: &[([i32; 3], u8)] = &[([0, 0, 0], 2), ([1, 0, 0], 6), ([0, 300, 40], 6)];
 
 #[test]
 fn points_of_las_keep_their_place_color_and_class() {
-    for (format, stride) in [(0, 20), (1, 30), (2, 26), (6, 30)] {
-        let scene = opened(load_las, las(format, stride, SURVEYED), &[]);
-        let names = scene.named_nodes.iter().map(|node| &*node.name);
-        assert_eq!(names.collect::<Vec<_>>(), ["ground", "building"]);
-        let places = scene.instances.iter().flat_map(|instance| {
-            let (scene, primitive) = (&scene, &scene.primitives[instance.primitive]);
-            let place = |at| DVec3::from(primitive.position(scene, at).map(f64::from));
-            (0..primitive.vertex_count())
-                .map(move |at| instance.world_from_object.transform_point3(place(at)))
-        });
-        for (place, (wanted, _)) in places.zip(SURVEYED) {
-            let [x, y, z] = wanted.map(|steps| 0.01 * f64::from(steps));
-            let wanted = DVec3::new(500_000.0 + x, 5_400_000.0 + y, 100.0 + z);
-            assert!(place.distance(wanted) < 1e-4, "{place}, not {wanted}");
+    let formats = [(0, 20), (1, 28), (2, 26), (6, 30), (7, 36)];
+    for (format, stride) in formats {
+        let plain = las(format, stride, SURVEYED);
+        for bytes in [laz(&plain), plain] {
+            let scene = opened(load_las, bytes, &[]);
+            let names = scene.named_nodes.iter().map(|node| &*node.name);
+            assert_eq!(names.collect::<Vec<_>>(), ["ground", "building"]);
+            let places = scene.instances.iter().flat_map(|instance| {
+                let (scene, primitive) = (&scene, &scene.primitives[instance.primitive]);
+                let place = |at| DVec3::from(primitive.position(scene, at).map(f64::from));
+                (0..primitive.vertex_count())
+                    .map(move |at| instance.world_from_object.transform_point3(place(at)))
+            });
+            for (place, (wanted, _)) in places.zip(SURVEYED) {
+                let [x, y, z] = wanted.map(|steps| 0.01 * f64::from(steps));
+                let wanted = DVec3::new(500_000.0 + x, 5_400_000.0 + y, 100.0 + z);
+                assert!(place.distance(wanted) < 1e-4, "{place}, not {wanted}");
+            }
+            let has_color = matches!(format, 2 | 7);
+            let is_red =
+                |([r, g, b], _): &([f32; 3], u32)| *r > 0.5 && g == b && (*g == *r) != has_color;
+            assert!(clouds(&scene).iter().all(is_red), "{:?}", clouds(&scene));
         }
-        let is_red =
-            |([r, g, b], _): &([f32; 3], u32)| *r > 0.5 && g == b && (*g == *r) != (format == 2);
-        assert!(clouds(&scene).iter().all(is_red), "{:?}", clouds(&scene));
+    }
+}
+
+#[test]
+fn a_variant_colors_the_points_of_a_cloud() {
+    let read = |load: LoadCloud, bytes: &[u8], shown: &str| {
+        let scene = load(&bytes, MemoryBudget::LEAST, shown, &mut |_, _| {
+            Err(LoadError::new("no other file"))
+        });
+        scene.expect("a cloud")
+    };
+    let gray = |scene: &Scene| clouds(scene).iter().all(|([r, g, b], _)| r == g && g == b);
+    let survey = las(2, 26, SURVEYED);
+    for (shown, is_gray) in [("", false), ("color", false), ("intensity", true)] {
+        let scene = read(load_las_shown, &survey, shown);
+        assert_eq!(scene.variants, ["color", "intensity", "class"]);
+        assert_eq!(gray(&scene), is_gray, "{shown}");
+    }
+    let by_class = clouds(&read(load_las_shown, &survey, "class"));
+    assert!(by_class[0] != by_class[1] && by_class[1] == by_class[2]);
+    for (shown, is_gray) in [("", false), ("intensity", true)] {
+        let scene = read(load_xyz_shown, b"0 0 0 -7 255 0 0\n1 0 0 9 0 0 255", shown);
+        assert_eq!(scene.variants, ["color", "intensity"]);
+        assert_eq!(gray(&scene), is_gray, "{shown}");
     }
 }
 
@@ -428,39 +488,51 @@ fn a_damaged_las_opens_as_far_as_it_goes_or_is_refused_in_words() {
     let whole = las(0, 20, SURVEYED);
     let note = "the file ends after 2 of 3 points; what is there is drawn";
     told(load_las, &whole[..whole.len() - 1], &[], &[note]);
-    for length in 0..whole.len() {
-        let _ = load(load_las, &whole[..length], &[]);
-    }
-    let with = |at: usize, value: u8| {
-        let mut bytes = whole.clone();
+    let packed = [laz(&whole), laz(&las(7, 36, SURVEYED))];
+    // The last chunk has one point, and a table of four words and more stands behind it.
+    let note = "the file ends or is damaged after 2 of 3 points; what is there is drawn";
+    told(load_las, &packed[1][..packed[1].len() - 60], &[], &[note]);
+    let with = |whole: &[u8], at: usize, value: u8| {
+        let mut bytes = whole.to_vec();
         bytes[at] = value;
         bytes
     };
+    for whole in packed.iter().chain([&whole]) {
+        for length in 0..whole.len() {
+            let _ = load(load_las, &whole[..length], &[]);
+        }
+        for at in 24..whole.len() {
+            for value in [0, 0x7f, 0xff] {
+                let _ = load(load_las, &with(whole, at, value), &[]);
+            }
+        }
+    }
     let header =
         "it is no LAS file: it does not begin with \"LASF\" and a header; fetch or export it again";
     for (bytes, sentence) in [
         (whole[..226].to_vec(), header),
         (
-            with(104, 0x80),
-            "it is compressed (LAZ), which is not read; unpack it to LAS",
+            with(&whole, 104, 0x80),
+            "it does not say how its points are compressed; fetch or export it again",
         ),
         (
-            with(104, 11),
+            with(&packed[0], 227 + 54 + 34, 7),
+            "its points of the format 0 are compressed in a way that is not read; unpack it to LAS",
+        ),
+        (
+            with(&whole, 104, 11),
             "its points are of the format 11; allowed: 0 to 10",
         ),
         (
-            with(105, 19),
+            with(&whole, 105, 19),
             "its points have 19 bytes; those of the format 0 have 20 or more",
         ),
         (
-            with(107, 0),
+            with(&whole, 107, 0),
             "there is nothing to draw: it has no points; export it again",
         ),
     ] {
         refused(load_las, &bytes, sentence);
-    }
-    for at in 24..whole.len() {
-        let _ = load(load_las, &with(at, 0xff), &[]);
     }
 }
 

@@ -220,12 +220,6 @@ fn what_a_small_file_claims_takes_neither_time_nor_memory() {
 /// Meshes of the corpus that are refused, with what is said.
 const REFUSED: &[(&str, &str)] = &[
     ("OBJ/box_UTF16BE.obj", "it is UTF-16 text; save it as UTF-8"),
-    (
-        "OBJ/point_cloud.obj",
-        "it has 3 vertices and no faces; export it with faces",
-    ),
-    ("OBJ/testline.obj", "no faces; export it with faces"),
-    ("OBJ/testpoints.obj", "no faces; export it with faces"),
     ("invalid/empty.obj", "it is empty"),
     ("invalid/empty.ply", "it is empty"),
 ];

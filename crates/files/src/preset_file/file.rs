@@ -118,12 +118,16 @@ impl PresetFile {
         self.preset.parts.up == UpAxis::Auto || self.is_plain()
     }
 
-    /// Takes from its scene, which has loaded, the axis that is up, and in the plain look the strength
-    /// that lights which are far too strong are dimmed to, if it `may_dim` them.
+    /// Takes from its scene, which has loaded, the axis that is up, and in the plain look what suits a
+    /// cloud of points and, if it `may_dim` them, the strength that lights which are far too strong are
+    /// dimmed to.
     pub fn settle(&mut self, scene: &Scene, may_dim: bool) {
         self.preset.parts.up = self.preset.parts.up.or(scene.up);
-        if may_dim && self.is_plain() {
-            self.preset.dim_lights(scene);
+        if self.is_plain() {
+            self.preset.suit_cloud(scene);
+            if may_dim {
+                self.preset.dim_lights(scene);
+            }
         }
     }
 

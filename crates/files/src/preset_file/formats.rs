@@ -8,7 +8,7 @@ use crate::{
         Scene, UpAxis,
         gltf::{self, LoadError},
         memory::MemoryBudget,
-        mesh_files::{self, LoadModel},
+        mesh_files::{self, LoadCloud, LoadModel},
     },
 };
 
@@ -27,8 +27,10 @@ enum Reader {
     Gltf,
     /// With the axis that is up in most files.
     Mesh(LoadModel, UpAxis),
-    /// Its +z is up.
-    Survey(LoadModel),
+    /// Its points may have several colors; with the axis that is up in most files.
+    Cloud(LoadCloud, UpAxis),
+    /// Its points may have several colors, and its +z is up.
+    Survey(LoadCloud),
 }
 
 /// Every format that is read. `tests/house/registry.rs` compares the texts that name them.
@@ -68,12 +70,22 @@ pub const MODEL_FORMATS: &[ModelFormat] = &[
     ModelFormat {
         extension: "xyz",
         beside: &[],
-        reader: Reader::Mesh(mesh_files::load_xyz, UpAxis::Z),
+        reader: Reader::Cloud(mesh_files::load_xyz_shown, UpAxis::Z),
+    },
+    ModelFormat {
+        extension: "pts",
+        beside: &[],
+        reader: Reader::Cloud(mesh_files::load_xyz_shown, UpAxis::Z),
     },
     ModelFormat {
         extension: "las",
         beside: &[],
-        reader: Reader::Survey(mesh_files::load_las),
+        reader: Reader::Survey(mesh_files::load_las_shown),
+    },
+    ModelFormat {
+        extension: "laz",
+        beside: &[],
+        reader: Reader::Survey(mesh_files::load_las_shown),
     },
 ];
 
@@ -91,14 +103,20 @@ impl ModelFormat {
         self.load_variant(path, "")
     }
 
-    /// [`Self::load`], with the materials of a variant where the file has one of this name.
+    /// [`Self::load`], with the materials, or the colors of points, of a variant where the file has one of
+    /// this name.
     pub fn load_variant(&self, path: &Path, variant: &str) -> Result<Scene, LoadError> {
         let budget = MemoryBudget::of_process();
         match self.reader {
             Reader::Gltf => model::load_as(path, budget, |model, budget, read| {
                 gltf::load_variant(model, budget, variant, read)
             }),
-            Reader::Mesh(load, _) | Reader::Survey(load) => model::load_as(path, budget, load),
+            Reader::Mesh(load, _) => model::load_as(path, budget, load),
+            Reader::Cloud(load, _) | Reader::Survey(load) => {
+                model::load_as(path, budget, |model, budget, read| {
+                    load(model, budget, variant, read)
+                })
+            }
         }
     }
 
@@ -108,7 +126,7 @@ impl ModelFormat {
         match self.reader {
             Reader::Gltf => UpAxis::Y,
             Reader::Survey(_) => UpAxis::Z,
-            Reader::Mesh(_, usual) => UpAxis::guessed(
+            Reader::Mesh(_, usual) | Reader::Cloud(_, usual) => UpAxis::guessed(
                 &scene.bounds(),
                 [&*scene.name].into_iter().chain(names),
                 || scene.foot_axis(),

@@ -6,6 +6,7 @@
 pub mod animation;
 mod backdrop;
 mod bookmark;
+mod cloud;
 mod fit;
 mod fitted;
 mod golden_budget;

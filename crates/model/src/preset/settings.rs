@@ -189,7 +189,7 @@ pub static SCENE: Section = Section {
                 Setting::new(
                     "path",
                     ValueType::Text { max_chars: 4096 },
-                    "A .glb, .gltf, .vrm, .obj, .stl, .ply, .xyz or .las file, relative to the folder of the preset",
+                    "A .glb, .gltf, .vrm, .obj, .stl, .ply, .xyz, .pts, .las or .laz file, relative to the folder of the preset",
                     MODEL,
                 )
                 .rule(is_file)
@@ -211,7 +211,7 @@ pub static SCENE: Section = Section {
                 Setting::new(
                     "variant",
                     LINE,
-                    "The variant of its materials in which a glTF model is shown (KHR_materials_variants), by its name or as #0, #1 …; empty: none",
+                    "The variant of its materials in which a glTF model is shown (KHR_materials_variants), or what colors the points of a cloud: color, intensity or class; by its name or as #0, #1 …; empty: none",
                     field!(parts.variant),
                 ),
                 Setting::new(

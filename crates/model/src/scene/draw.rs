@@ -7,7 +7,7 @@ use rayon::prelude::*;
 pub use super::bounds::MAX_MAGNITUDE;
 use super::{
     bounds::Bounds,
-    model::{Instance, Primitive, Scene},
+    model::{Instance, Primitive, Scene, Topology},
     parts::{Scope, scope_masks},
     pose::{Deform, Pose},
     view::View,
@@ -270,9 +270,12 @@ pub fn scoped_draws(scene: &Scene, view: &View, scopes: &[Scope]) -> Result<Vec<
             origin,
             clip_from_object,
             world_from_object,
-            // A point faces the viewer.
-            double_sided: !primitive.is_points()
-                && (scene.materials[primitive.material].double_sided || view.is_light()),
+            // A point faces the viewer, and a line has no sides.
+            double_sided: match primitive.topology {
+                Topology::Points => false,
+                Topology::Lines => true,
+                _ => scene.materials[primitive.material].double_sided || view.is_light(),
+            },
             mirrored: (world_from_object.determinant() < 0.0)
                 != deform.as_ref().is_some_and(Deform::mirrors),
             is_uneven: is_uneven(&world_from_object),

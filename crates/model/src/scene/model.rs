@@ -30,6 +30,9 @@ pub enum Topology {
     /// Every corner is a point. It is drawn as a triangle whose three corners it is, spread about it
     /// on the screen.
     Points = 3,
+    /// Every two corners are a segment of a line. It is drawn as two triangles whose corners it has,
+    /// spread to its sides on the screen.
+    Lines = 4,
 }
 
 impl Topology {
@@ -38,6 +41,7 @@ impl Topology {
         match self {
             Self::List => corners / 3,
             Self::Points => corners,
+            Self::Lines => corners / 2 * 2,
             Self::Strip | Self::Fan => corners.saturating_sub(2),
         }
     }
@@ -47,6 +51,7 @@ impl Topology {
         match self {
             Self::List => [3 * t, 3 * t + 1, 3 * t + 2],
             Self::Points => [t; 3],
+            Self::Lines => [t / 2 * 2, t, t / 2 * 2 + 1],
             Self::Strip => [t, t + 1 + t % 2, t + 2 - t % 2],
             Self::Fan => [t + 1, t + 2, 0],
         }
@@ -112,6 +117,16 @@ impl Primitive {
     /// Are they points?
     pub fn is_points(&self) -> bool {
         self.topology == Topology::Points
+    }
+
+    /// Are they lines?
+    pub fn is_lines(&self) -> bool {
+        self.topology == Topology::Lines
+    }
+
+    /// Are they points or lines, which are triangles only on the screen?
+    pub fn is_spread(&self) -> bool {
+        self.is_points() || self.is_lines()
     }
 
     /// The three vertex indices of triangle `t`.
@@ -258,8 +273,8 @@ pub struct Scene {
     pub materials: Vec<Material>,
     /// The images that textures refer to.
     pub images: Vec<Image>,
-    /// Names of the variants of materials that its file has. Primitives have the materials of the
-    /// one with which it was loaded.
+    /// Names of the variants of materials that its file has, or of what may color the points of a
+    /// cloud. Primitives have those of the one with which it was loaded.
     pub variants: Vec<String>,
     /// What is drawn, in order.
     pub instances: Vec<Instance>,
@@ -326,7 +341,7 @@ impl Scene {
             && self
                 .primitives
                 .iter()
-                .all(|p| p.deformation.is_none() && !p.is_points())
+                .all(|p| p.deformation.is_none() && !p.is_spread())
     }
 
     /// The index of the variant of materials called `name`. `#2` is the variant at index 2, under

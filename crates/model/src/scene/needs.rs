@@ -72,7 +72,7 @@ pub struct Needs {
     pub morph_targets: bool,
     /// Some triangles are particle discs.
     pub particle_discs: bool,
-    /// Some primitives are points.
+    /// Some primitives are points or lines.
     pub points: bool,
     /// How joints are blended, where any deform a mesh.
     pub skinning: Option<Skinning>,
@@ -172,7 +172,7 @@ impl Needs {
                     .is_some_and(|deform| deform.weights.iter().any(|weight| *weight != 0.0))
             }),
             particle_discs: scene.particle_discs.is_some(),
-            points: drawn().any(Primitive::is_points),
+            points: drawn().any(Primitive::is_spread),
             skinning: draws
                 .iter()
                 .find_map(|draw| Some(draw.deform.as_ref()?.joint_transforms.as_ref()?.skinning())),
@@ -407,6 +407,8 @@ fn largest_px(primitive: &Primitive, draw: &Draw, view: &View) -> f64 {
     };
     let clip_from_object =
         DMat4::from_cols_array_2d(&draw.clip_from_object.map(|column| column.map(f64::from)));
+    // To both sides of a line.
+    let width = if primitive.is_lines() { 1.0 } else { 0.0 };
     let corners = bounds.corners().map(|corner| draw.clip_point(corner));
     let error_bound = 1.0 + 1e-4;
     let is_before_near =
@@ -429,6 +431,7 @@ fn largest_px(primitive: &Primitive, draw: &Draw, view: &View) -> f64 {
             }
             (linear_row(axis) + reach * linear_row(3)) * longest_edge / min_w * half * error_bound
                 + 1.0 / 128.0
+                + width
         })
         .into_iter()
         .fold(0.0, f64::max)

@@ -85,6 +85,10 @@ impl Ray {
             if primitive.is_points() {
                 return self.passes(corner(primitive.corners(scene, triangle)[0]), radius);
             }
+            if primitive.is_lines() {
+                let [a, _, b] = primitive.corners(scene, triangle).map(corner);
+                return self.passes(self.nearest_of_segment(a, b), 0.0);
+            }
             let (distance, is_front) =
                 self.meets(primitive.corners(scene, triangle).map(corner))?;
             let is_shown = sides == Sides::Both || draw.double_sided || is_front != draw.mirrored;
@@ -104,6 +108,20 @@ impl Ray {
         let reach = (radius * (at_eye + further)).max(at_eye + further * t);
         let aside = point - self.from - self.along * t;
         (t > 0.0 && aside.length_squared() <= reach * reach).then_some(t)
+    }
+
+    /// The point of a segment that is nearest to the ray's line.
+    fn nearest_of_segment(&self, a: DVec3, b: DVec3) -> DVec3 {
+        let (segment, to_a) = (b - a, a - self.from);
+        let aside = |v: DVec3| v - self.along * (v.dot(self.along) / self.along.length_squared());
+        let (across, from) = (aside(segment), aside(to_a));
+        let t = -from.dot(across) / across.length_squared();
+        a + segment
+            * if t.is_finite() {
+                t.clamp(0.0, 1.0)
+            } else {
+                0.0
+            }
     }
 
     /// Distance along the ray to a triangle, and whether its corners run counterclockwise as seen

@@ -237,6 +237,17 @@ impl EndToEnd<'_> {
             }
             own
         });
+        // Along which axis the sides of a line lie, too.
+        if self.shot.draws_lines(draw) {
+            let [from, _, to] = self.shot.corner_indices(draw, self.own, id);
+            let is_flat = |geometry: &Geometry| {
+                let [from, to] = [from, to].map(|index| &geometry.vertices[index]);
+                (to.x - from.x).abs() >= (to.y - from.y).abs()
+            };
+            if is_flat(self.own) != is_flat(self.adapter) {
+                reach += pixel;
+            }
+        }
         let drawn = match self.shot.stack.shape() {
             Shape::Triangles => match shown {
                 Some(shown) => Drawn::Point(shown),

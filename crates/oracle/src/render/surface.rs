@@ -64,6 +64,8 @@ pub struct SurfaceTriangle<'a> {
     is_deformed: bool,
     /// None where no texture turns its normals.
     tangents: Option<Tangents>,
+    /// It is a point, whose normal is turned to the viewer: scanners do not tell the sides apart.
+    is_point: bool,
 }
 
 /// What the corners of a triangle mix at a sample.
@@ -153,6 +155,7 @@ impl<'a> SurfaceTriangle<'a> {
                 .then_some((records, stack.point_radius().into())),
             is_deformed: false,
             tangents: Tangents::of(shot, draw, triangle, object, side),
+            is_point: primitive.is_points(),
         };
         if draw.is_uneven {
             // Each normal as long in the world as in object space.
@@ -240,7 +243,13 @@ impl<'a> SurfaceTriangle<'a> {
         };
         let smooth = self
             .normals
-            .and_then(|normals| self.smooth_normal(weights, normals));
+            .and_then(|normals| self.smooth_normal(weights, normals))
+            .map(
+                |normal| match self.is_point && normal.dot(toward_eye) < 0.0 {
+                    true => -normal,
+                    false => normal,
+                },
+            );
         let side = if perturbation.is_turned { -1.0 } else { 1.0 };
         let flat_normal = self
             .flat_normal
@@ -369,10 +378,16 @@ impl<'a> SurfaceTriangle<'a> {
             .into()
     }
 
-    /// Returns true if f32 may see the other side of the triangle at the center of a pixel, where
+    /// Returns true if f32 may see the other side of the triangle, or of a point, at the center of a pixel, where
     /// the corners err by so much in x, y and w of clip space: in any direction, and along one.
     pub fn may_turn(&self, x: usize, y: usize, clip_errors: &[[DVec3; 2]; 3]) -> bool {
         let point = self.sample_point(DVec2::new(x as f64 + 0.5, y as f64 + 0.5));
+        if self.is_point {
+            // Of the roundings of a product of unit vectors this is a thousand times as much.
+            const EDGE_ON: f64 = 1e-3;
+            let surface = self.surface(x, y, &Perturbation::default());
+            return surface.normal.dot(surface.view).abs() < EDGE_ON;
+        }
         self.weights.may_turn(clip_errors, &point)
     }
 

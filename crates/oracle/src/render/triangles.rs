@@ -134,8 +134,8 @@ impl Assembly<'_> {
             self.clipped(id);
         } else if any == 0 {
             match doubled_area(&corners) {
-                // A point whose corner an effect draws shows its front.
-                0 if self.shot.scene.primitives[self.draw.primitive].is_points() => {
+                // A point or line whose corners an effect draws shows its front.
+                0 if self.shot.draws_corners(self.draw) => {
                     let area = if self.draw.mirrored { 1 } else { -1 };
                     self.oriented(id, id as usize, corners, area);
                 }

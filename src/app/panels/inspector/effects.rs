@@ -128,6 +128,10 @@ fn enabled_ui(
         }
         ui.add_enabled_ui(!is_muted, |ui| {
             scope_ui(ui, state, commands, effect);
+            let scene = state.session.scene();
+            if let Some(why) = scene.and_then(|scene| effect.why_idle(scene)) {
+                theme::notice(ui, theme::amber(), why);
+            }
             parameters_ui(ui, state, commands, effect);
         });
         precision_ui(ui, state, commands, effect);

@@ -232,7 +232,7 @@ fn variants_ui(ui: &mut Ui, scene: &Scene, shown: &ShownParts, commands: &Comman
         name => format!("variant {name}"),
     };
     let offers = (0..scene.variants.len()).map(|index| (id(index), id(index)));
-    let hint = "Variants of the scene's materials";
+    let hint = "Variants of the scene's materials, or what colors its points";
     let chosen = (Some(&shown.variant), NONE);
     if let Some(variant) = scene_menu(ui, "scene.variant", now, chosen, offers, hint) {
         commands.edit(Edit::Parts(ShownParts {

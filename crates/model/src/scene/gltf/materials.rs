@@ -89,7 +89,6 @@ fn used(document: &Document, shown: &[usize]) -> BTreeSet<usize> {
     let meshes = shown.iter().filter_map(|&node| document.nodes[node].mesh);
     let primitives = meshes.flat_map(|mesh| document.meshes[mesh].sound());
     primitives
-        .filter(|(_, primitive)| primitive.topology.is_some())
         .filter_map(|(_, primitive)| primitive.material)
         .collect()
 }

@@ -153,10 +153,7 @@ impl<'a> Loader<'a> {
         about: &'a document::Primitive,
     ) -> Result<(), LoadError> {
         let notes = self.buffers.notes;
-        let Some(topology) = about.topology else {
-            notes.add(|| format!("{name} is skipped: lines are not drawn"));
-            return Ok(());
-        };
+        let topology = about.topology;
         let Some(&positions) = about.attributes.get("POSITION") else {
             notes.add(|| format!("{name} is skipped: it has no POSITION"));
             return Ok(());
@@ -184,12 +181,23 @@ impl<'a> Loader<'a> {
             .writer
             .attribute(positions, count, &[3], position_formats)
             .map_err(at("POSITION"))?;
-        let normals = self.optional(name, about, "NORMAL", count, (&[3], normal_formats))?;
+        let normals = match topology {
+            // A line has no sides.
+            Topology::Lines => None,
+            _ => self.optional(name, about, "NORMAL", count, (&[3], normal_formats))?,
+        };
         let colors = self.optional(name, about, "COLOR_0", count, (&[3, 4], FLOAT_OR_UNORM))?;
         let indices = about
             .indices
             .map(|accessor| self.writer.indices(accessor).map_err(at("indices")))
             .transpose()?;
+        let indices = match about.chain {
+            None => indices,
+            Some(chain) => {
+                let joined = self.writer.joined(indices, count, chain);
+                Some(joined.map_err(at("indices"))?)
+            }
+        };
         let corners = indices.map_or(count, |indices| indices.count);
         self.budget_triangles(topology, corners)
             .map_err(if indices.is_some() {
@@ -207,7 +215,8 @@ impl<'a> Loader<'a> {
             indices,
             positions,
             normals: normals.unwrap_or(positions),
-            is_faceted: normals.is_none() && topology != Topology::Points,
+            is_faceted: normals.is_none()
+                && !matches!(topology, Topology::Points | Topology::Lines),
             colors,
             texcoords,
             tangents: None,
@@ -236,8 +245,10 @@ impl<'a> Loader<'a> {
             };
             primitive.longest_edge =
                 point_cloud::diameter((0..count).map(at_vertex), &primitive.bounds);
+        }
+        if primitive.is_spread() {
             if normals.is_none() {
-                // One for all: a point without a normal faces the viewer.
+                // One for all: what has none faces the viewer.
                 let none = self.writer.append_vectors(1, [[0.0; 3]].into_iter());
                 primitive.normals = Accessor {
                     stride: 0,
@@ -439,7 +450,12 @@ impl<'a> Loader<'a> {
         let triangles = topology.triangles(corners);
         if triangles == 0 {
             return Err(LoadError::new(format!(
-                "{corners} corners form no triangle; it takes at least 3"
+                "{corners} corners form no {}",
+                match topology {
+                    Topology::Points => "point; it takes at least 1",
+                    Topology::Lines => "line; it takes at least 2",
+                    _ => "triangle; it takes at least 3",
+                }
             )));
         }
         self.triangles += u64::from(triangles);

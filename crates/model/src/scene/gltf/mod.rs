@@ -5,12 +5,11 @@
 //! for instance. Only what leaves nothing to draw is an error, and what exceeds the [`limits`], which
 //! are checked in 64-bit arithmetic before a byte is read. Attribute bytes are copied as they are.
 //!
-//! Supported: triangle lists, strips and fans, all index widths, interleaved, sparse, quantized and
+//! Supported: triangle lists, strips and fans, points and lines, all index widths, interleaved, sparse, quantized and
 //! compressed (Draco, meshopt) accessors, base color and emission with their textures, vertex
 //! colors, the nodes, cameras and lights of the default scene, many instances of a node's mesh, skins, morph
 //! targets and clips. Left out with
-//! an entry in [`Scene::notes`](crate::scene::Scene::notes): points, lines, normal maps and the
-//! rest of physically based shading.
+//! an entry in [`Scene::notes`](crate::scene::Scene::notes): normal maps and the rest of physically based shading.
 
 pub(super) mod buffers;
 pub(super) mod checks;

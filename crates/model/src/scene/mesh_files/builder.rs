@@ -94,8 +94,15 @@ pub struct Kind {
     pub has_normals: bool,
     pub has_colors: bool,
     pub has_texcoords: bool,
-    /// Its vertices are points, which no face has.
-    pub is_points: bool,
+    pub shape: Shape,
+}
+
+/// What the vertices of a part are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Shape {
+    Faces,
+    Points,
+    Lines,
 }
 
 /// Faces of one kind.
@@ -250,6 +257,17 @@ impl Builder {
         Ok(())
     }
 
+    /// Adds a segment to a part of lines.
+    pub fn segment(&mut self, part: usize, ends: [Vertex; 2]) -> Result<(), LoadError> {
+        self.count_triangles(2)?;
+        self.room.take(size_of::<[u32; 2]>())?;
+        for end in ends {
+            let index = self.vertex(part, end)?;
+            self.parts[part].indices.push(index);
+        }
+        Ok(())
+    }
+
     /// Adds a point to a part of points.
     pub fn point(&mut self, part: usize, point: Vertex) -> Result<(), LoadError> {
         self.triangles += 1;
@@ -267,22 +285,33 @@ impl Builder {
         Ok(())
     }
 
+    /// Gives every vertex with a color the one that `paint` makes of its channels.
+    pub fn paint(&mut self, paint: impl Fn([u16; 3]) -> [u16; 4]) {
+        let colors = self.parts.iter_mut().flat_map(|part| &mut part.colors);
+        colors.for_each(|color| *color = paint([color[0], color[1], color[2]]));
+    }
+
     /// Adds a triangle.
     pub fn triangle(&mut self, part: usize, corners: [Vertex; 3]) -> Result<(), LoadError> {
-        self.triangles += 1;
-        let most = self.room.limits.triangles;
-        if self.triangles > most {
-            return Err(self.room.limits.exceeded(
-                format_args!("the model has {} triangles or more", self.triangles),
-                most,
-            ));
-        }
+        self.count_triangles(1)?;
         self.room.take(size_of::<[u32; 3]>())?;
         for corner in corners {
             let index = self.vertex(part, corner)?;
             self.parts[part].indices.push(index);
         }
         Ok(())
+    }
+
+    fn count_triangles(&mut self, more: u64) -> Result<(), LoadError> {
+        self.triangles += more;
+        let most = self.room.limits.triangles;
+        match self.triangles > most {
+            true => Err(self.room.limits.exceeded(
+                format_args!("the model has {} triangles or more", self.triangles),
+                most,
+            )),
+            false => Ok(()),
+        }
     }
 
     fn vertex(&mut self, part: usize, vertex: Vertex) -> Result<u32, LoadError> {
@@ -330,7 +359,7 @@ impl Builder {
         let mut plain = HashMap::new();
         let center = far_center(parts.iter());
         for part in parts {
-            if !part.indices.is_empty() || part.kind.is_points {
+            if !part.indices.is_empty() || part.kind.shape == Shape::Points {
                 let own = || far_center(std::iter::once(&part));
                 let center = center.or_else(own).unwrap_or_default();
                 add(part, center, &limits, &mut scene, &mut plain, &notes)?;
@@ -400,7 +429,7 @@ fn add(
         .map(|position| (DVec3::from(position) - center).as_vec3().to_array())
         .collect();
     let vertices = positions.len();
-    if kind.is_points {
+    if kind.shape == Shape::Points {
         let cloud = PointCloud {
             positions,
             normals,
@@ -423,6 +452,10 @@ fn add(
     drop(positions);
     let normals_at = stored(bytemuck::cast_slice(&normals))? as usize;
     drop(normals);
+    let normals_at = match kind.shape {
+        Shape::Lines => stored(&[0; 12])? as usize,
+        _ => normals_at,
+    };
     let colors_at = stored(bytemuck::cast_slice(&colors))?;
     drop(colors);
     let texcoords_at = stored(bytemuck::cast_slice(&texcoords))? as usize;
@@ -434,11 +467,16 @@ fn add(
     )?;
     let mesh = kind.node.map(|node| scene.named_nodes[node].name.clone());
     let positions = Accessor::packed_f32(positions_at, 3, vertices);
-    let is_faceted = !kind.has_normals;
+    let is_lines = kind.shape == Shape::Lines;
+    let is_faceted = !kind.has_normals && !is_lines;
     let mut primitive = Primitive {
         name: called("mesh", 0, mesh.as_deref()),
         mesh: part_name("mesh", 0, mesh.as_deref()),
-        topology: Topology::List,
+        topology: if is_lines {
+            Topology::Lines
+        } else {
+            Topology::List
+        },
         indices: Some(Accessor {
             offset: indices_at,
             stride: 4,
@@ -450,6 +488,11 @@ fn add(
         positions,
         normals: match is_faceted {
             true => positions,
+            // One for all: a line faces the viewer.
+            false if is_lines => Accessor {
+                stride: 0,
+                ..Accessor::packed_f32(normals_at, 3, vertices)
+            },
             false => Accessor::packed_f32(normals_at, 3, vertices),
         },
         is_faceted,
@@ -481,7 +524,7 @@ fn add(
             bytemuck::cast_slice(&normals),
         )?;
         primitive.normals = Accessor::packed_f32(at as usize, 3, vertices);
-    } else {
+    } else if !is_lines {
         primitive.normals_agree = primitive.normals_agree(scene)?;
     }
     let texcoords = Accessor::packed_f32(texcoords_at, 2, vertices);

@@ -1,9 +1,11 @@
-//! LAS: points of surveys, with colors or intensities, each of a class. Height is its z.
+//! LAS, and LAZ, which is the same compressed: points of surveys, with colors or intensities, each of a
+//! class. Height is its z.
 
 use super::{
-    builder::{Builder, Kind, Room, Vertex},
-    colors,
+    builder::{Builder, Kind, Room, Shape, Vertex},
+    colors::{self, Shown},
     findings::Findings,
+    laz::Packing,
     stream::Stream,
 };
 use crate::scene::{
@@ -32,14 +34,28 @@ const CLASSES: &[&str] = &[
     "road",
 ];
 
-/// Loads a LAS file within a memory budget. Its classes are parts, so that effects can be limited to
-/// them.
+/// [`load_shown`] in the points' own color.
 ///
 /// # Errors
-/// It is compressed, there is nothing to draw, a limit is exceeded, or loading was canceled.
+/// Those of [`load_shown`].
 pub fn load(
     model: &dyn Source,
     budget: MemoryBudget,
+    read: &mut ReadFile,
+) -> Result<Scene, LoadError> {
+    load_shown(model, budget, "", read)
+}
+
+/// Loads a LAS or LAZ file within a memory budget, in the color that is called `shown`: `color`,
+/// `intensity` or `class`; its own, or else its intensity, by any other name. Its classes are parts, so
+/// that effects can be limited to them.
+///
+/// # Errors
+/// There is nothing to draw, a limit is exceeded, or loading was canceled.
+pub fn load_shown(
+    model: &dyn Source,
+    budget: MemoryBudget,
+    shown: &str,
     _read: &mut ReadFile,
 ) -> Result<Scene, LoadError> {
     let head = super::head(model, budget, "a LAS file", |head| {
@@ -50,12 +66,14 @@ pub fn load(
             "it is no LAS file: it does not begin with \"LASF\" and a header; fetch or export it again",
         ));
     }
-    let layout = Layout::of(&head)?;
-    let brightest = layout.brightest(model)?;
+    let layout = Layout::of(model, &head)?;
+    let has_color = layout.color.is_some();
+    let shown = Shown::named(shown, has_color);
     let mut builder = Builder::new(Scene::default(), Room::of(budget, model.size()));
     let mut findings = Findings::default();
     let mut nodes = [None; 256];
-    let read = layout.each(model, |record| {
+    let (mut brightest, mut strongest) = (0, 0);
+    let read = layout.each(model, &mut |record| {
         let class = layout.class(record);
         let node = *nodes[class].get_or_insert_with(|| {
             let name = CLASSES
@@ -69,13 +87,17 @@ pub fn load(
             has_normals: false,
             has_colors: true,
             has_texcoords: false,
-            is_points: true,
+            shape: Shape::Points,
         };
         let mut point = Vertex::at([0; 4], layout.place(record));
-        let shown = layout
-            .channels(record)
-            .map(|channel| (f64::from(channel) / brightest) as f32);
-        point.color = colors::of_vertex(shown);
+        let [r, g, b] = match shown {
+            Shown::Color => layout.own_color(record),
+            Shown::Intensity => [layout.intensity(record); 3],
+            Shown::Class => colors::of_class(class).map(|channel| 257 * u16::from(channel)),
+        };
+        point.color = [r, g, b, u16::MAX];
+        brightest = brightest.max(r).max(g).max(b);
+        strongest = strongest.max(layout.intensity(record));
         if point
             .position
             .iter()
@@ -87,13 +109,30 @@ pub fn load(
         Ok(())
     })?;
     if read < layout.count {
-        findings.fault("what is there is drawn", || {
-            format!("the file ends after {read} of {} points", layout.count)
+        let count = layout.count;
+        findings.fault("what is there is drawn", || match layout.packing {
+            None => format!("the file ends after {read} of {count} points"),
+            Some(_) => {
+                format!("the file ends or is damaged after {read} of {count} points")
+            }
         });
     }
+    // Colors that fit a byte are meant as such, and intensities have no largest value.
+    let full = match shown {
+        Shown::Color if brightest <= 255 => 255.0,
+        Shown::Intensity => f64::from(brightest.max(1)),
+        _ => 65_535.0,
+    };
+    let is_black = brightest == 0 && shown == Shown::Intensity;
+    builder.paint(|channels| match is_black {
+        true => [u16::MAX; 4],
+        false => colors::of_vertex(channels.map(|channel| (f64::from(channel) / full) as f32)),
+    });
     let notes = Notes::default();
     findings.tell(&notes);
-    builder.finish(notes, true, || "it has no points; export it again".into())
+    let mut scene = builder.finish(notes, true, || "it has no points; export it again".into())?;
+    scene.variants = Shown::offered(has_color, strongest > 0, scene.named_nodes.len() > 1);
+    Ok(scene)
 }
 
 /// Where the header says that the values of points lie.
@@ -110,20 +149,18 @@ struct Layout {
     color: Option<usize>,
     scale: [f64; 3],
     offset: [f64; 3],
+    /// How points are compressed, if they are.
+    packing: Option<Packing>,
 }
 
 impl Layout {
-    fn of(head: &[u8]) -> Result<Self, LoadError> {
+    fn of(model: &dyn Source, head: &[u8]) -> Result<Self, LoadError> {
         let u16_at = |at: usize| u16::from_le_bytes([head[at], head[at + 1]]);
         let u32_at = |at: usize| u32::from(u16_at(at)) | u32::from(u16_at(at + 2)) << 16;
         let u64_at = |at: usize| u64::from(u32_at(at)) | u64::from(u32_at(at + 4)) << 32;
         let f64_at = |at: usize| f64::from_bits(u64_at(at));
-        let format = head[104];
-        if format & 0xc0 != 0 {
-            return Err(LoadError::new(
-                "it is compressed (LAZ), which is not read; unpack it to LAS",
-            ));
-        }
+        // The upper bits tell that points are compressed.
+        let (format, is_packed) = (head[104] & 0x3f, head[104] & 0xc0 != 0);
         let is_late = (head[24], head[25]) >= (1, 4) && head.len() >= HEADER_1_4;
         let (class, class_mask, least) = match format {
             0..=5 => (15, 0x1f, [20, 28, 26, 34, 57, 63][usize::from(format)]),
@@ -134,9 +171,19 @@ impl Layout {
                 )));
             }
         };
-        let layout = Self {
-            first: u32_at(96).into(),
-            stride: u16_at(105).into(),
+        let (first, stride) = (u64::from(u32_at(96)), usize::from(u16_at(105)));
+        if stride < least {
+            return Err(LoadError::new(format!(
+                "its points have {stride} bytes; those of the format {format} have {least} or more"
+            )));
+        }
+        let packing = || {
+            let records = [u64::from(u16_at(94)), first];
+            Packing::of(model, records, format, [stride, stride - least])
+        };
+        Ok(Self {
+            first,
+            stride,
             count: match (u32_at(107), is_late) {
                 (0, true) => u64_at(247),
                 (count, _) => count.into(),
@@ -151,24 +198,23 @@ impl Layout {
             },
             scale: [131, 139, 147].map(f64_at),
             offset: [155, 163, 171].map(f64_at),
-        };
-        match layout.stride < least {
-            true => Err(LoadError::new(format!(
-                "its points have {} bytes; those of the format {format} have {least} or more",
-                layout.stride
-            ))),
-            false => Ok(layout),
-        }
+            packing: is_packed.then(packing).transpose()?,
+        })
     }
 
     /// Visits the points; returns how many there are.
     fn each(
         &self,
         model: &dyn Source,
-        mut visit: impl FnMut(&[u8]) -> Result<(), LoadError>,
+        visit: &mut dyn FnMut(&[u8]) -> Result<(), LoadError>,
     ) -> Result<u64, LoadError> {
         let mut stream = Stream::new(model);
-        stream.skip(self.first)?;
+        if !stream.skip(self.first)? {
+            return Ok(0);
+        }
+        if let Some(packing) = &self.packing {
+            return packing.each(&mut stream, self.count, visit);
+        }
         for read in 0..self.count {
             let Some(record) = stream.bytes(self.stride)? else {
                 return Ok(read);
@@ -190,27 +236,14 @@ impl Layout {
         })
     }
 
-    /// Its color, or its intensity.
-    fn channels(&self, record: &[u8]) -> [u16; 3] {
-        let value = |at: usize| u16::from_le_bytes([record[at], record[at + 1]]);
-        match self.color {
-            Some(at) => [0, 2, 4].map(|byte| value(at + byte)),
-            None => [value(12); 3],
-        }
+    fn intensity(&self, record: &[u8]) -> u16 {
+        u16::from_le_bytes([record[12], record[13]])
     }
 
-    /// The value of a channel that is full: colors that fit a byte are meant as such, and intensities
-    /// have none.
-    fn brightest(&self, model: &dyn Source) -> Result<f64, LoadError> {
-        let mut most = 1;
-        self.each(model, |record| {
-            most = self.channels(record).into_iter().fold(most, u16::max);
-            Ok(())
-        })?;
-        Ok(match (self.color, most) {
-            (None, most) => most.into(),
-            (Some(_), 0..=255) => 255.0,
-            (Some(_), _) => 65_535.0,
-        })
+    /// Black where there is none.
+    fn own_color(&self, record: &[u8]) -> [u16; 3] {
+        let value = |at: usize| u16::from_le_bytes([record[at], record[at + 1]]);
+        self.color
+            .map_or([0; 3], |at| [0, 2, 4].map(|byte| value(at + byte)))
     }
 }

@@ -1,4 +1,4 @@
-//! Loaders of OBJ with its MTL, of STL, PLY, XYZ and LAS, for untrusted files.
+//! Loaders of OBJ with its MTL, of STL, PLY, XYZ, LAS and LAZ, for untrusted files.
 //!
 //! What the formats allow is drawn as far as it is supported. A part that breaks them (a line, a
 //! face, a material, a texture) is left out and the rest is kept, with one sentence for each kind
@@ -14,6 +14,7 @@ mod builder;
 mod colors;
 mod findings;
 mod las;
+mod laz;
 mod mtl;
 mod obj;
 mod ply;
@@ -29,11 +30,14 @@ use crate::scene::{memory::MemoryBudget, model::Scene};
 /// files beside the model.
 pub type LoadModel = fn(&dyn Source, MemoryBudget, &mut ReadFile) -> Result<Scene, LoadError>;
 
-pub use las::load as load_las;
+/// A loader of a cloud whose points have several colors, with the name of the one to be shown.
+pub type LoadCloud = fn(&dyn Source, MemoryBudget, &str, &mut ReadFile) -> Result<Scene, LoadError>;
+
+pub use las::{load as load_las, load_shown as load_las_shown};
 pub use obj::load as load_obj;
 pub use ply::load as load_ply;
 pub use stl::load as load_stl;
-pub use xyz::load as load_xyz;
+pub use xyz::{load as load_xyz, load_shown as load_xyz_shown};
 
 /// The first bytes of a model.
 ///

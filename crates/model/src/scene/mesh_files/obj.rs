@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use super::{
     beside::Beside,
-    builder::{Builder, Kind, Room, Vertex, plain_material},
+    builder::{Builder, Kind, Room, Shape, Vertex, plain_material},
     colors,
     findings::Findings,
     mtl::{self, Library},
@@ -31,8 +31,8 @@ use crate::{
 /// Most lines that name material files.
 const MOST_LIBRARIES: usize = 256;
 
-/// Points, lines and free-form curves and surfaces, which are not drawn.
-const NOT_DRAWN: &[&str] = &["p", "l", "curv", "curv2", "surf"];
+/// Free-form curves and surfaces, which are not drawn.
+const NOT_DRAWN: &[&str] = &["curv", "curv2", "surf"];
 
 /// Keywords without a meaning for what is drawn.
 const IGNORED: &[&str] = &[
@@ -103,6 +103,9 @@ pub fn load(
         sums: Vec::new(),
     };
     faces.read(model)?;
+    if !faces.has_faces {
+        faces.loose_points()?;
+    }
     let Faces {
         mut builder,
         has_faces,
@@ -121,7 +124,7 @@ pub fn load(
     drop((lists, sums));
     findings.tell(&notes);
     builder.finish(notes, has_faces, || {
-        format!("it has {vertices} vertices and no faces; export it with faces")
+        format!("it has {vertices} vertices, of which none has a place; export it again")
     })
 }
 
@@ -259,7 +262,7 @@ struct Faces<'a> {
     findings: Findings,
     /// How many positions, texture coordinates and normals came before.
     passed: [usize; 3],
-    /// There is a face, whatever is wrong with it.
+    /// There is a face, a point or a line, whatever is wrong with it.
     has_faces: bool,
     /// Of the object and of the group.
     names: [Option<String>; 2],
@@ -292,8 +295,19 @@ impl Faces<'_> {
                 "vn" => self.passed[2] += 1,
                 "f" | "fo" => {
                     self.has_faces = true;
-                    if self.corners(rest, at, &mut corners)? {
+                    if self.corners(rest, at, ("face", 3), &mut corners)? {
                         self.face(&corners, at, &mut face)?;
+                    }
+                }
+                "p" | "l" => {
+                    self.has_faces = true;
+                    let (what, least) = if keyword == "p" {
+                        ("point", 1)
+                    } else {
+                        ("line", 2)
+                    };
+                    if self.corners(rest, at, (what, least), &mut corners)? {
+                        self.spread(&corners, keyword == "p")?;
                     }
                 }
                 "o" => (self.names, self.node) = ([named(), None], None),
@@ -347,6 +361,7 @@ impl Faces<'_> {
         &mut self,
         rest: &str,
         line: u64,
+        (what, least): (&str, usize),
         corners: &mut Vec<Corner>,
     ) -> Result<bool, LoadError> {
         let lists = self.lists;
@@ -372,26 +387,72 @@ impl Faces<'_> {
         }
         if let Some((part, i)) = wrong {
             let is_lost = i == 0;
-            let what = ["vertex", "texture coordinates", "normal"][i];
+            let of = ["vertex", "texture coordinates", "normal"][i];
             let (part, count) = (quoted(part), counts[i]);
             let remedy = match is_lost {
                 true => "it is left out",
                 false => "it is drawn without",
             };
             self.findings.fault(remedy, || {
-                format!("line {line}: the face has the {what} {part}, but there are {count}")
+                format!("line {line}: the {what} has the {of} {part}, but there are {count}")
             });
             if is_lost {
                 return Ok(false);
             }
         }
-        if corners.len() < 3 {
+        if corners.len() < least {
             self.findings.fault("it is left out", || {
                 let count = corners.len();
-                format!("line {line}: the face has {count} corners; it takes at least 3")
+                format!("line {line}: the {what} has {count} corners; it takes at least {least}")
             });
         }
-        Ok(corners.len() >= 3)
+        Ok(corners.len() >= least)
+    }
+
+    /// Adds points, or the segments of a line.
+    fn spread(&mut self, corners: &[Corner], is_points: bool) -> Result<(), LoadError> {
+        let material = self.material.map_or_else(|| self.named_plain(), Ok)?;
+        let kind = Kind {
+            node: self.node()?,
+            material,
+            has_normals: false,
+            has_colors: !self.lists.colors.is_empty(),
+            has_texcoords: false,
+            shape: if is_points {
+                Shape::Points
+            } else {
+                Shape::Lines
+            },
+        };
+        let lists = self.lists;
+        let vertex = |[v, ..]: &Corner| {
+            let position = lists.positions[*v as usize];
+            let is_placed = position.iter().all(|value| value.is_finite());
+            let mut vertex = Vertex::at([*v, NONE, NONE, 0], position);
+            if kind.has_colors {
+                vertex.color = lists.colors[*v as usize];
+            }
+            is_placed.then_some(vertex)
+        };
+        for pair in corners.windows(if is_points { 1 } else { 2 }) {
+            let (Some(from), Some(to)) = (vertex(&pair[0]), vertex(&pair[pair.len() - 1])) else {
+                continue;
+            };
+            let part = self.builder.part(kind)?;
+            match is_points {
+                true => self.builder.point(part, from)?,
+                false => self.builder.segment(part, [from, to])?,
+            }
+        }
+        Ok(())
+    }
+
+    /// Of a file without faces, points and lines, every vertex is a point.
+    fn loose_points(&mut self) -> Result<(), LoadError> {
+        for at in 0..self.lists.positions.len() as u32 {
+            self.spread(&[[at, NONE, NONE]], true)?;
+        }
+        Ok(())
     }
 
     fn face(
@@ -426,7 +487,7 @@ impl Faces<'_> {
             has_normals: has_normals || is_smooth,
             has_colors: !lists.colors.is_empty(),
             has_texcoords: is_textured && has_texcoords,
-            is_points: false,
+            shape: Shape::Faces,
         };
         let first = DVec3::from(position(&corners[0]));
         let edge = |corner: &Corner| DVec3::from(position(corner)) - first;

@@ -4,7 +4,7 @@
 use std::collections::HashMap;
 
 use super::{
-    builder::{Builder, Kind, Room, Vertex},
+    builder::{Builder, Kind, Room, Shape, Vertex},
     colors,
     findings::Findings,
     stream::{Stream, numbers, split},
@@ -97,7 +97,7 @@ impl Reader {
             has_normals: false,
             has_colors,
             has_texcoords: false,
-            is_points: false,
+            shape: Shape::Faces,
         }
     }
 

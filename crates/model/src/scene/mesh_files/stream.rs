@@ -61,6 +61,15 @@ impl<'a> Stream<'a> {
         Ok(Some(&self.buffer[start..self.next]))
     }
 
+    /// [`Self::bytes`], which are read again.
+    pub fn peek(&mut self, count: usize) -> Result<Option<&[u8]>, LoadError> {
+        if self.bytes(count)?.is_none() {
+            return Ok(None);
+        }
+        self.next -= count;
+        Ok(Some(&self.buffer[self.next..self.next + count]))
+    }
+
     /// Passes over `count` bytes; false where fewer are left.
     pub fn skip(&mut self, mut count: u64) -> Result<bool, LoadError> {
         if count > self.left() {

@@ -2,8 +2,8 @@
 //! and a normal.
 
 use super::{
-    builder::{Builder, Kind, Room, Vertex},
-    colors,
+    builder::{Builder, Kind, Room, Shape, Vertex},
+    colors::{self, Shown},
     findings::Findings,
     stream::{Stream, number},
 };
@@ -14,23 +14,42 @@ use crate::scene::{
     model::Scene,
 };
 
+/// Numbers of a line with a gray and a color.
+const BOTH: usize = 7;
+
 /// Most numbers of a line that say something.
 const MOST: usize = 9;
 
-/// Loads a point cloud of text within a memory budget. Numbers stand between spaces, commas or
+/// [`load_shown`] in the points' own color.
+///
+/// # Errors
+/// Those of [`load_shown`].
+pub fn load(
+    model: &dyn Source,
+    budget: MemoryBudget,
+    read: &mut ReadFile,
+) -> Result<Scene, LoadError> {
+    load_shown(model, budget, "", read)
+}
+
+/// Loads a point cloud of text within a memory budget, in the color that is called `shown`: `color`, or
+/// `intensity` where lines have both. Numbers stand between spaces, commas or
 /// semicolons; a line that does not begin with three is left out.
 ///
 /// # Errors
 /// There is nothing to draw, a limit is exceeded, or loading was canceled.
-pub fn load(
+pub fn load_shown(
     model: &dyn Source,
     budget: MemoryBudget,
+    shown: &str,
     _read: &mut ReadFile,
 ) -> Result<Scene, LoadError> {
     super::head(model, budget, "an XYZ file", |_| false)?;
     let mut builder = Builder::new(Scene::default(), Room::of(budget, model.size()));
     let mut findings = Findings::default();
-    let brightest = brightest(model)?;
+    let is_gray = Shown::named(shown, true) == Shown::Intensity;
+    let mut has_both = false;
+    let [darkest, brightest] = range(model, is_gray)?;
     let (mut stream, mut line) = (Stream::new(model), Vec::new());
     while stream.line(&mut line)? {
         let mut values = [0.0; MOST];
@@ -51,11 +70,12 @@ pub fn load(
             has_normals: count == MOST,
             has_colors: count > 3,
             has_texcoords: false,
-            is_points: true,
+            shape: Shape::Points,
         };
         let mut point = Vertex::at([0; 4], [x, y, z]);
-        let shown = |at: usize| (values[at] / brightest) as f32;
-        point.color = colors::of_vertex(match channels(count) {
+        let shown = |at: usize| ((values[at] - darkest) / (brightest - darkest)) as f32;
+        has_both |= count == BOTH;
+        point.color = colors::of_vertex(match channels(count, is_gray) {
             (first, 1) => [shown(first); 3],
             (first, _) => [0, 1, 2].map(|channel| shown(first + channel)),
         });
@@ -65,7 +85,11 @@ pub fn load(
     }
     let notes = Notes::default();
     findings.tell(&notes);
-    builder.finish(notes, true, || "it has no points; export it again".into())
+    let mut scene = builder.finish(notes, true, || "it has no points; export it again".into())?;
+    if has_both {
+        scene.variants = Shown::offered(true, true, false);
+    }
+    Ok(scene)
 }
 
 /// The numbers at the beginning of a line.
@@ -89,29 +113,36 @@ fn is_bare(line: &[u8]) -> bool {
 
 /// Where the color stands among so many numbers, and how many they are: one is a gray, and of seven
 /// one stands before the color.
-fn channels(count: usize) -> (usize, usize) {
+fn channels(count: usize, is_gray: bool) -> (usize, usize) {
     match count {
         ..=5 => (3, 1),
-        7 => (4, 3),
+        BOTH if is_gray => (3, 1),
+        BOTH => (4, 3),
         _ => (3, 3),
     }
 }
 
-/// The value of a channel that is full: one, a byte's, that of two bytes, or else the largest.
-fn brightest(model: &dyn Source) -> Result<f64, LoadError> {
+/// The values of a channel that is empty and of one that is full: 0, or the least below, and one, a
+/// byte's, that of two bytes, or else the largest.
+fn range(model: &dyn Source, is_gray: bool) -> Result<[f64; 2], LoadError> {
     let (mut stream, mut line) = (Stream::new(model), Vec::new());
-    let mut most: f64 = 0.0;
+    let [mut least, mut most] = [0.0f64; 2];
     while stream.line(&mut line)? {
         let mut values = [0.0; MOST];
         let count = read(&line, &mut values);
         if count > 3 {
-            let (first, channels) = channels(count);
-            let shown = &values[first..first + channels];
-            most = shown.iter().fold(most, |a, b| a.max(*b));
+            let (first, channels) = channels(count, is_gray);
+            for value in &values[first..first + channels] {
+                (least, most) = (least.min(*value), most.max(*value));
+            }
         }
     }
     let full = [1.0, 255.0, 65_535.0]
         .into_iter()
         .find(|full| most <= *full);
-    Ok(full.unwrap_or(most))
+    // Grays around 0 have no such values.
+    Ok(match least < 0.0 {
+        true => [least, most],
+        false => [0.0, full.unwrap_or(most)],
+    })
 }

@@ -197,14 +197,23 @@ impl Mesh {
     }
 }
 
-/// Triangles, or points and lines.
+/// How the corners of a line are joined.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Chain {
+    Open,
+    /// The last also to the first.
+    Closed,
+}
+
+/// Triangles, points or lines.
 #[derive(Debug)]
 pub struct Primitive {
     /// Accessors by the names of attributes.
     pub attributes: BTreeMap<String, usize>,
     pub indices: Option<usize>,
-    /// `None`: lines.
-    pub topology: Option<Topology>,
+    pub topology: Topology,
+    /// Of lines whose corners are each joined to the next.
+    pub chain: Option<Chain>,
     pub material: Option<usize>,
     /// Materials by variants.
     pub variants: BTreeMap<usize, usize>,

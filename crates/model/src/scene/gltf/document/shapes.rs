@@ -21,7 +21,7 @@ use super::{
         error::quoted,
         instancing::INSTANCING,
     },
-    Accessor, Buffer, Camera, Instancing, Mesh, Node, Part, Primitive, Scene, Sparse, View,
+    Accessor, Buffer, Camera, Chain, Instancing, Mesh, Node, Part, Primitive, Scene, Sparse, View,
     element::{Element, Object, legible_value, whole, wrong},
     read::{LIGHTS, Lists, VISIBILITY, is_unknown_compression},
     variants,
@@ -192,16 +192,20 @@ fn primitive(lists: &Lists, mut part: Element) -> Part<Primitive> {
     part.drop_index("material", ("materials", lists.materials.len()));
     lists.check(&part.json, "indices", lists.accessors())?;
     let read: json::mesh::Primitive = part.read(&["indices", "mode", "extensions"])?;
+    let (topology, chain) = match part.known("mode", read.mode, VALID_MODES)? {
+        Mode::Points => (Topology::Points, None),
+        Mode::Lines => (Topology::Lines, None),
+        Mode::LineLoop => (Topology::Lines, Some(Chain::Closed)),
+        Mode::LineStrip => (Topology::Lines, Some(Chain::Open)),
+        Mode::Triangles => (Topology::List, None),
+        Mode::TriangleStrip => (Topology::Strip, None),
+        Mode::TriangleFan => (Topology::Fan, None),
+    };
     let primitive = Primitive {
         attributes,
         indices: read.indices.map(|index| index.value()),
-        topology: match part.known("mode", read.mode, VALID_MODES)? {
-            Mode::Points => Some(Topology::Points),
-            Mode::Lines | Mode::LineLoop | Mode::LineStrip => None,
-            Mode::Triangles => Some(Topology::List),
-            Mode::TriangleStrip => Some(Topology::Strip),
-            Mode::TriangleFan => Some(Topology::Fan),
-        },
+        topology,
+        chain,
         material: read.material.map(|index| index.value()),
         variants,
         targets,

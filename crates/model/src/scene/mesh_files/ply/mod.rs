@@ -7,7 +7,7 @@ use std::path::Path;
 
 use super::{
     beside::Beside,
-    builder::{Builder, Kind, Room, Vertex, plain_material},
+    builder::{Builder, Kind, Room, Shape, Vertex, plain_material},
     colors,
     findings::Findings,
     stream::Stream,
@@ -282,7 +282,7 @@ impl Reader {
             has_normals: !vertices.normals.is_empty(),
             has_colors: paint.is_some() || !vertices.colors.is_empty(),
             has_texcoords: is_textured && has_texcoords,
-            is_points: false,
+            shape: Shape::Faces,
         };
         self.builder.widen(corners.len())?;
         self.face.clear();
@@ -341,7 +341,7 @@ impl Reader {
             has_normals: !vertices.normals.is_empty(),
             has_colors: !vertices.colors.is_empty(),
             has_texcoords: false,
-            is_points: true,
+            shape: Shape::Points,
         };
         for (at, &position) in vertices.positions.iter().enumerate() {
             if is_loose(at) && position.iter().all(|value| value.is_finite()) {
