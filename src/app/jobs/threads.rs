@@ -16,9 +16,9 @@ mod native {
 
     use pollster::FutureExt as _;
 
-    /// Stack of a thread, as the main thread has on Linux. What a picture needs without optimization
-    /// does not fit into the 2 MiB of a thread that asks for nothing.
-    const STACK_BYTES: usize = 8 << 20;
+    /// Stack of a thread: a picture of many effects takes more than the 8 MiB of the main thread
+    /// where nothing is optimized. What is not used takes no memory.
+    const STACK_BYTES: usize = 16 << 20;
 
     /// A thread of this name that draws.
     pub fn named(name: &str) -> thread::Builder {
