@@ -24,7 +24,7 @@ pub fn line(preset_file: &PresetFile) -> Result<String, String> {
     match &preset_file.preset.scene {
         SceneSource::Builtin(_) => Ok(preset_file::to_line(preset_file)),
         SceneSource::File(model) => Err(format!(
-            "{}: its scene is the model {}, which a page cannot read from here; choose a built-in scene (rasterlab list scenes)",
+            "{}: its scene is the model {}, which a page cannot read from here; choose a built-in scene",
             preset_file.id,
             model.display()
         )),

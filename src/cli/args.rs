@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, CommandFactory as _, Parser, Subcommand, ValueEnum};
 
-use super::values::{fraction, frames, rate, size, turntable};
+use super::values::{fraction, frames, name, path, rate, size, turntable};
 use crate::{
     effect_files::Hook,
     film::Turntable,
@@ -22,12 +22,15 @@ pub struct Cli {
     #[arg(value_name = "PRESET|MODEL|PICTURE.png")]
     pub open: Option<String>,
     /// Append the messages of the window's log to this file, each as a line
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", value_parser = path())]
     pub log: Option<PathBuf>,
     #[command(flatten)]
     pub common: Common,
     #[command(subcommand)]
     pub command: Option<Command>,
+    /// The shared options that were typed, by the names of their fields.
+    #[arg(skip)]
+    pub shared: Vec<String>,
 }
 
 const LONG: &str = "An effects lab around a compute-shader rasterizer, judged by an exact oracle.\n\n\
@@ -36,9 +39,9 @@ const LONG: &str = "An effects lab around a compute-shader rasterizer, judged by
     Exit codes: 0 done; 1 a comparison, check or stress case failed, a measured error exceeds its limit, or a dry run found \
     changes; 2 wrong usage, or a file that cannot be read or written; 3 no suitable adapter; 4 the device was lost.";
 
-/// Flags that every command has.
+/// Flags that commands share; [`takes`] says which has a use for which.
 #[derive(Args, Debug, Default)]
-#[command(next_help_heading = "Options of every command")]
+#[command(next_help_heading = "Shared options")]
 pub struct Common {
     /// Part of an adapter's name, or cpu for the built-in oracle [env: RASTERLAB_ADAPTER]
     #[arg(long, global = true, value_name = "NAME")]
@@ -213,11 +216,6 @@ pub enum Command {
 }
 
 impl Command {
-    /// Does it draw or describe presets, so that `--preset` means something?
-    pub fn takes_look(&self) -> bool {
-        TAKES_LOOK.contains(&self.name())
-    }
-
     pub fn name(&self) -> &'static str {
         match self {
             Self::List(_) => "list",
@@ -245,21 +243,48 @@ impl Command {
     }
 }
 
-/// The commands that draw or describe presets.
-pub const TAKES_LOOK: [&str; 11] = [
-    "render", "sequence", "sweep", "verify", "compare", "explain", "probe", "parts", "bench",
-    "link", "page",
-];
+/// Has a command a use for a shared option, by the name of its field? The others are refused.
+pub fn takes(command: &str, option: &str) -> bool {
+    const READS: &str = "presets effects shaders allow_outside memory json quiet strict";
+    let (first, more) = match command {
+        "completions" | "man" => return false,
+        "adapters" => ("", "json quiet"),
+        "gallery" => ("", "shaders quiet"),
+        "list" => ("", "presets effects shaders json quiet"),
+        "new-effect" => ("", "effects shaders json quiet force"),
+        "stress" => ("", "adapter shaders memory device_memory json quiet"),
+        "bless" => (READS, ""),
+        "parts" | "link" => (READS, "preset set unset"),
+        "page" => (READS, "preset set unset force"),
+        "check" | "review" => return option != "preset",
+        "bench" | "explain" | "probe" => return option != "force",
+        _ => return true,
+    };
+    [first, more]
+        .join(" ")
+        .split(' ')
+        .any(|name| name == option)
+}
+
+/// The names of the shared options.
+pub fn shared_options() -> Vec<String> {
+    let options = Common::augment_args(clap::Command::new("shared"));
+    let names = options.get_arguments().map(|arg| arg.get_id().to_string());
+    names.collect()
+}
 
 /// The table of all commands and flags, where the help of a command does not list what it refuses.
 pub fn command() -> clap::Command {
     let mut command =
         Cli::command().mut_arg("log", |log| log.help_heading("Options of the window"));
     command.build();
+    let shared = shared_options();
     command.mut_subcommands(|subcommand| {
-        let refuses = !TAKES_LOOK.contains(&subcommand.get_name());
+        let name = subcommand.get_name().to_owned();
+        let is_refused =
+            |option: &str| shared.iter().any(|name| name == option) && !takes(&name, option);
         // In place: a built command knows its flags by their indices, which `mut_arg` would move.
-        subcommand.mut_args(|arg| match refuses && arg.get_id() == "preset" {
+        subcommand.mut_args(|arg| match is_refused(arg.get_id().as_str()) {
             true => arg.hide(true),
             false => arg,
         })
@@ -293,7 +318,7 @@ pub struct Page {
     #[arg(value_name = "PRESET")]
     pub input: String,
     /// File to write
-    #[arg(short, long, value_name = "FILE")]
+    #[arg(short, long, value_name = "FILE", value_parser = path())]
     pub output: PathBuf,
     /// Address of the page that shows the picture alive (docs/web.md)
     #[arg(long, value_name = "URL", default_value = PAGE)]
@@ -306,7 +331,7 @@ pub struct Page {
 #[derive(Args, Debug)]
 pub struct Gallery {
     /// Write it between the gallery markers of this file instead of to stdout
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", value_parser = path())]
     pub into: Option<PathBuf>,
 }
 
@@ -342,7 +367,7 @@ pub struct Render {
     #[arg(required = true, value_name = "PRESET")]
     pub inputs: Vec<String>,
     /// File to write, - for stdout; may contain {preset} {effect} {n} {n:3} {adapter} {tier}
-    #[arg(short, long, value_name = "FILE", default_value = "{preset}.png")]
+    #[arg(short, long, value_name = "FILE", default_value = "{preset}.png", value_parser = name())]
     pub output: String,
     /// Size in pixels, e.g. 1920x1080, or 1080p, 4k, square or story
     #[arg(long, value_name = "WxH|NAME", value_parser = size)]
@@ -368,11 +393,11 @@ pub struct Render {
     pub bare: bool,
     /// Also write the id of the visible triangle of every pixel, 4294967295 for none, as a NumPy
     /// array of u32; placeholders as in --output
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", value_parser = name())]
     pub triangle_ids: Option<String>,
     /// Also write the depth of the visible sample of every pixel, in meters along the view, NaN
     /// for none, as a NumPy array of f32
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", value_parser = name())]
     pub depths: Option<String>,
 }
 
@@ -382,13 +407,13 @@ pub struct Sequence {
     pub input: String,
     /// A file per frame, e.g. 'frame_{frame:4}.png'; may contain {preset} {effect} {frame}
     /// {frame:4} {adapter} {tier}
-    #[arg(short, long, value_name = "FILE", required_unless_present_any = ["apng", "video", "count"])]
+    #[arg(short, long, value_name = "FILE", required_unless_present_any = ["apng", "video", "count"], value_parser = name())]
     pub output: Option<String>,
     /// Write all frames into one animated PNG
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", value_parser = path())]
     pub apng: Option<PathBuf>,
     /// Write all frames into a video, .mp4, .webm or .gif, with ffmpeg
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", value_parser = path())]
     pub video: Option<PathBuf>,
     /// Turn once over the range: the camera goes around the scene, or with =scene the scene turns
     /// before it
@@ -431,7 +456,7 @@ pub struct Sweep {
     #[arg(long, required = true, value_name = "PATH=STEPS")]
     pub vary: Vec<String>,
     /// File to write, - for stdout; may contain {preset} {effect} {n} {n:3} {adapter} {tier}
-    #[arg(short, long, value_name = "FILE", default_value = "{preset}-sweep.png")]
+    #[arg(short, long, value_name = "FILE", default_value = "{preset}-sweep.png", value_parser = name())]
     pub output: String,
     /// Size of each picture in pixels, e.g. 320x240
     #[arg(long, value_name = "WxH|NAME", value_parser = size)]
@@ -456,7 +481,7 @@ pub struct Verify {
     #[arg(long, value_name = "WxH|NAME", value_parser = size)]
     pub size: Option<[u32; 2]>,
     /// Folder for pictures of expected, actual and difference side by side
-    #[arg(short, long, value_name = "DIR")]
+    #[arg(short, long, value_name = "DIR", value_parser = path())]
     pub output: Option<PathBuf>,
 }
 
@@ -467,7 +492,7 @@ pub struct Compare {
     /// A PNG or a preset
     pub b: String,
     /// Write a picture of the differences
-    #[arg(short, long, value_name = "FILE")]
+    #[arg(short, long, value_name = "FILE", value_parser = name())]
     pub output: Option<String>,
     /// Largest allowed difference of a channel, of 255
     #[arg(long, default_value_t = 1)]
@@ -581,7 +606,7 @@ pub struct Check {
     #[arg(long)]
     pub render: bool,
     /// Write one self-contained HTML file with all pictures
-    #[arg(long, value_name = "FILE", requires = "render")]
+    #[arg(long, value_name = "FILE", requires = "render", value_parser = name())]
     pub report: Option<String>,
     /// Folder of the goldens [default: snapshots beside the preset, if it is there, or else
     /// tests/snapshots]

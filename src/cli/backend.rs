@@ -290,11 +290,21 @@ pub fn scene_of(
 /// Tells what a person should know of the scene of a picture.
 pub fn tell(preset: &Preset, scene: &Scene, streams: &Streams) {
     scene.notes.iter().for_each(|note| streams.note(note));
+    for enabled in &preset.stack.0 {
+        if let Some(why) = enabled.effect.why_idle(scene) {
+            streams.note(&format!("{}: {why}", enabled.effect.name));
+        }
+    }
     if let Some(camera) = preset.cropping_camera(scene) {
         let name = legible_line(&camera.name);
         streams.note(&format!(
             "info: the file's camera {name} leaves out some of the model; --set 'scene.camera={NO_CAMERA}' shows all of it"
         ));
+    }
+    if preset.view(scene, preset.output.size).precision.is_relative {
+        streams.note(
+            "info: the scene lies far from its origin, so positions are taken relative to the eye",
+        );
     }
 }
 

@@ -20,16 +20,6 @@ use crate::{
 };
 
 pub fn run(common: &Common, args: &Bless, streams: &mut Streams) -> Result<Exit, CliError> {
-    if common.adapter.is_some() {
-        return Err(CliError::usage(
-            "bless takes no --adapter: only the oracle draws goldens",
-        ));
-    }
-    if !(common.set.is_empty() && common.unset.is_empty()) {
-        return Err(CliError::usage(
-            "bless takes no --set and no --unset: a golden is drawn from the preset file",
-        ));
-    }
     let preset_files = preset_files(common, args, streams)?;
     let bar = streams.progress(preset_files.len() as u64);
     let (mut results, mut changed) = (Vec::new(), false);

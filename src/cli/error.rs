@@ -141,4 +141,19 @@ macro_rules! usage_errors {
     )*};
 }
 
-usage_errors![PresetError, SceneError, DrawError, Conflict, std::io::Error];
+/// Where no preset is near to what was typed, it says what lists them all.
+impl From<PresetError> for CliError {
+    fn from(mut error: PresetError) -> Self {
+        if let PresetError::NoPreset { hint, .. } = &mut error
+            && hint.is_empty()
+        {
+            *hint = "; rasterlab list presets shows all of them".into();
+        }
+        Self {
+            exit: Exit::Usage,
+            error: error.into(),
+        }
+    }
+}
+
+usage_errors![SceneError, DrawError, Conflict, std::io::Error];

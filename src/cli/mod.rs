@@ -39,7 +39,7 @@ mod verify;
 
 use std::io::{self, Write as _};
 
-use clap::{CommandFactory as _, FromArgMatches as _};
+use clap::{CommandFactory as _, FromArgMatches as _, parser::ValueSource};
 use serde_json::{Value, json};
 
 use args::Common;
@@ -91,11 +91,10 @@ pub fn run(cli: &Cli) -> Result<Exit, CliError> {
     let Some(command) = &cli.command else {
         return window(cli);
     };
-    if cli.common.preset.is_some() && !command.takes_look() {
+    if let Some(option) = (cli.shared.iter()).find(|option| !args::takes(command.name(), option)) {
+        let (name, option) = (command.name(), option.replace('_', "-"));
         return Err(CliError::usage(format!(
-            "--preset has no meaning for {}; it puts a look on the scene that {} or the window shows",
-            command.name(),
-            args::TAKES_LOOK.join(", ")
+            "--{option} has no meaning for {name}; rasterlab {name} --help lists what it takes"
         )));
     }
     if let Some(preset_file) = &cli.open {
@@ -221,7 +220,15 @@ fn suggest_command(error: CliError, what: &str) -> CliError {
 pub fn parse() -> Result<Cli, clap::Error> {
     let mut command = args::command();
     let matches = command.try_get_matches_from_mut(std::env::args_os())?;
-    Cli::from_arg_matches(&matches).map_err(|error| error.format(&mut command))
+    let mut cli = Cli::from_arg_matches(&matches).map_err(|error| error.format(&mut command))?;
+    if let Some((_, given)) = matches.subcommand() {
+        let is_typed = |name: &String| given.value_source(name) == Some(ValueSource::CommandLine);
+        cli.shared = args::shared_options()
+            .into_iter()
+            .filter(is_typed)
+            .collect();
+    }
+    Ok(cli)
 }
 
 /// What is wrong with arguments that cannot be read because the first word is a mistyped command.

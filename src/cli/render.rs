@@ -48,10 +48,6 @@ pub fn run(common: &Common, args: &Render, streams: &mut Streams) -> Result<Exit
         let scene = scene_of(common, preset_file, streams)?;
         let preset_file = &*preset_file;
         tell(&preset_file.preset, &scene, streams);
-        let size = preset_file.preset.output.size;
-        if preset_file.preset.view(&scene, size).precision.is_relative {
-            streams.note("info: the scene lies far from its origin, so positions are taken relative to the eye");
-        }
         let frame = backend.frame(&preset_file.preset, &scene)?;
         let names = names(preset_file, &backend);
         let saved = if to_stdout {

@@ -15,6 +15,7 @@ use super::{
     finding::{Drawn, Finding},
     open::gallery_name,
     streams::{Streams, number},
+    values::path,
 };
 use crate::{
     golden::{difference_text, has_golden},
@@ -33,7 +34,7 @@ pub struct Review {
     pub files: Vec<String>,
     /// Write three pictures of each into this folder, PRESET.golden.png, PRESET.now.png and
     /// PRESET.difference.png (16 times the difference), and the listing as review.txt
-    #[arg(long, short, value_name = "DIR")]
+    #[arg(long, short, value_name = "DIR", value_parser = path())]
     pub output: Option<PathBuf>,
     /// Folder of the goldens [default: snapshots beside the preset, if it is there, or else
     /// tests/snapshots]

@@ -103,6 +103,11 @@ pub fn run(common: &Common, args: &Sequence, streams: &mut Streams) -> Result<Ex
     if let Some(other) = &args.toward {
         film = film.toward(open(common, other)?)?;
     }
+    if film.is_still() {
+        streams.note(
+            "info: nothing in this film moves, so every frame shows the same; --turntable turns it",
+        );
+    }
     let mut backend = Backend::open(common, streams)?;
     let outputs = Outputs {
         frames: frame_paths(args, &film, &backend)?,

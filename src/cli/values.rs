@@ -1,9 +1,26 @@
 //! Values of flags that are read from text. What cannot be read is said with what can be written.
 
+use std::path::PathBuf;
+
+use clap::builder::{PathBufValueParser, StringValueParser, TypedValueParser};
+
 use crate::{
     film::{Turntable, read_rate},
     preset::{NAMED_SIZES, named_size},
 };
+
+/// The name of a file to write, or a template of names, without the blanks around it.
+pub fn name() -> impl TypedValueParser<Value = String> {
+    StringValueParser::new().map(|name| name.trim().to_owned())
+}
+
+/// [`name`] as a path, which need not be text.
+pub fn path() -> impl TypedValueParser<Value = PathBuf> {
+    PathBufValueParser::new().map(|path| {
+        path.to_str()
+            .map_or(path.clone(), |name| name.trim().into())
+    })
+}
 
 /// `30..60`, `..60`, `30..`.
 pub fn frames(text: &str) -> Result<[Option<u32>; 2], String> {

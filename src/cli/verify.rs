@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 
 use super::{
     args::{Common, Verify},
-    backend::{Backend, scene_of},
+    backend::{Backend, scene_of, tell},
     error::{CliError, Exit},
     files::{self, Names},
     open::presets,
@@ -86,12 +86,7 @@ pub fn run(common: &Common, args: &Verify, streams: &mut Streams) -> Result<Exit
     for preset_file in &mut preset_files {
         bar.set_message(preset_file.id.clone());
         let verified = scene_of(common, preset_file, streams).and_then(|scene| {
-            for enabled in &preset_file.preset.stack.0 {
-                if let Some(why) = enabled.effect.why_idle(&scene) {
-                    let name = &enabled.effect.name;
-                    streams.note(&format!("{}: {name}: {why}", preset_file.id));
-                }
-            }
+            tell(&preset_file.preset, &scene, streams);
             check(common, &options, preset_file, &scene, &mut backend)
         });
         match (verified, &preset_file.preset.test) {

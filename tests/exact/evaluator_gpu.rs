@@ -10,19 +10,25 @@ use rasterlab::{
 
 use crate::common::*;
 
-/// Results of every expression for every input: `bits[input * expressions + expression]`.
-fn by_adapter(gpu: &Gpu, text: &str, inputs: &[[u32; 4]], expressions: usize) -> Vec<u32> {
-    let source = wgpu::ShaderSource::Wgsl(text.into());
+/// What the kernel `calculate` of `text` writes to its binding 1, `size` bytes, of `given` at its
+/// binding 0.
+pub fn calculated<In: bytemuck::Pod, Out: bytemuck::Pod>(
+    gpu: &Gpu,
+    text: String,
+    given: &[In],
+    size: usize,
+    workgroups: [u32; 2],
+) -> Vec<Out> {
     let module = gpu
         .device
         .create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some("lattice"),
-            source,
+            label: Some("calculate"),
+            source: wgpu::ShaderSource::Wgsl(text.into()),
         });
     let pipeline = gpu
         .device
         .create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-            label: Some("lattice"),
+            label: Some("calculate"),
             layout: None,
             module: &module,
             entry_point: Some("calculate"),
@@ -30,26 +36,24 @@ fn by_adapter(gpu: &Gpu, text: &str, inputs: &[[u32; 4]], expressions: usize) ->
             cache: None,
         });
     let buffer = |size: usize, usage| {
-        let usage = wgpu::BufferUsages::STORAGE | usage;
         gpu.device.create_buffer(&wgpu::BufferDescriptor {
             label: None,
             size: size as u64,
-            usage,
+            usage: wgpu::BufferUsages::STORAGE | usage,
             mapped_at_creation: false,
         })
     };
-    let given = buffer(16 * inputs.len(), wgpu::BufferUsages::COPY_DST);
-    let size = 4 * inputs.len() * expressions;
+    let inputs = buffer(size_of_val(given), wgpu::BufferUsages::COPY_DST);
     let results = buffer(size, wgpu::BufferUsages::COPY_SRC);
     gpu.queue
-        .write_buffer(&given, 0, bytemuck::cast_slice(inputs));
+        .write_buffer(&inputs, 0, bytemuck::cast_slice(given));
     let bind_group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
         label: None,
         layout: &pipeline.get_bind_group_layout(0),
         entries: &[
             wgpu::BindGroupEntry {
                 binding: 0,
-                resource: given.as_entire_binding(),
+                resource: inputs.as_entire_binding(),
             },
             wgpu::BindGroupEntry {
                 binding: 1,
@@ -61,7 +65,7 @@ fn by_adapter(gpu: &Gpu, text: &str, inputs: &[[u32; 4]], expressions: usize) ->
     let mut pass = encoder.begin_compute_pass(&Default::default());
     pass.set_pipeline(&pipeline);
     pass.set_bind_group(0, &bind_group, &[]);
-    pass.dispatch_workgroups(inputs.len().div_ceil(64) as u32, 1, 1);
+    pass.dispatch_workgroups(workgroups[0], workgroups[1], 1);
     drop(pass);
     gpu.queue.submit([encoder.finish()]);
     let bytes = buffers::read(gpu, &results, size as u64)
@@ -69,6 +73,13 @@ fn by_adapter(gpu: &Gpu, text: &str, inputs: &[[u32; 4]], expressions: usize) ->
         .expect("results are read back");
     assert_eq!(gpu.take_error(), None);
     bytemuck::pod_collect_to_vec(&bytes)
+}
+
+/// Results of every expression for every input: `bits[input * expressions + expression]`.
+fn by_adapter(gpu: &Gpu, text: &str, inputs: &[[u32; 4]], expressions: usize) -> Vec<u32> {
+    let size = 4 * inputs.len() * expressions;
+    let workgroups = [inputs.len().div_ceil(64) as u32, 1];
+    calculated(gpu, text.into(), inputs, size, workgroups)
 }
 
 /// One function `case_0`, `case_1`, … for each expression of `a`, `b` and `c`, and the kernel that

@@ -10,7 +10,7 @@ use rasterlab::{
     accuracy::{DepthFormat, PinnedOptions, VertexTransform, Visibility},
     effects::Stack,
     frame::NO_TRIANGLE,
-    gpu::{Gpu, Renderer, buffers},
+    gpu::{Gpu, Renderer},
     math::{fnv1a, hash},
     measure::compare,
     oracle::{self, ftz},
@@ -23,7 +23,7 @@ use rasterlab::{
     shader::library::Library,
 };
 
-use crate::common::*;
+use crate::{common::*, evaluator_gpu};
 
 // -------- soft floats
 
@@ -43,64 +43,15 @@ fn calculate(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) group
 /// Sum, product, quotient and the first rounded, of each pair, by the shaders of `library` on the
 /// adapter.
 fn calculated(gpu: &Gpu, library: &Library, pairs: &[[u32; 2]]) -> Vec<[u32; 4]> {
-    let text = format!(
-        "{}{KERNEL}",
-        library.text("lib/softfloat").expect("the file is there")
-    );
-    let module = gpu
-        .device
-        .create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some("soft"),
-            source: wgpu::ShaderSource::Wgsl(text.into()),
-        });
-    let pipeline = gpu
-        .device
-        .create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-            label: Some("soft"),
-            layout: None,
-            module: &module,
-            entry_point: Some("calculate"),
-            compilation_options: Default::default(),
-            cache: None,
-        });
-    let buffer = |size, usage| {
-        gpu.device.create_buffer(&wgpu::BufferDescriptor {
-            label: None,
-            size,
-            usage: wgpu::BufferUsages::STORAGE | usage,
-            mapped_at_creation: false,
-        })
-    };
-    let given = buffer(8 * pairs.len() as u64, wgpu::BufferUsages::COPY_DST);
-    let results = buffer(16 * pairs.len() as u64, wgpu::BufferUsages::COPY_SRC);
-    gpu.queue
-        .write_buffer(&given, 0, bytemuck::cast_slice(pairs));
-    let bind_group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: None,
-        layout: &pipeline.get_bind_group_layout(0),
-        entries: &[
-            wgpu::BindGroupEntry {
-                binding: 0,
-                resource: given.as_entire_binding(),
-            },
-            wgpu::BindGroupEntry {
-                binding: 1,
-                resource: results.as_entire_binding(),
-            },
-        ],
-    });
-    let mut encoder = gpu.device.create_command_encoder(&Default::default());
-    let mut pass = encoder.begin_compute_pass(&Default::default());
-    pass.set_pipeline(&pipeline);
-    pass.set_bind_group(0, &bind_group, &[]);
-    pass.dispatch_workgroups(1024, pairs.len() as u32 / 65_536, 1);
-    drop(pass);
-    gpu.queue.submit([encoder.finish()]);
-    let bytes = buffers::read(gpu, &results, 16 * pairs.len() as u64)
-        .block_on()
-        .expect("results are read back");
-    assert_eq!(gpu.take_error(), None);
-    bytemuck::pod_collect_to_vec(&bytes)
+    let softfloat = library.text("lib/softfloat").expect("the file is there");
+    let workgroups = [1024, pairs.len() as u32 / 65_536];
+    evaluator_gpu::calculated(
+        gpu,
+        format!("{softfloat}{KERNEL}"),
+        pairs,
+        16 * pairs.len(),
+        workgroups,
+    )
 }
 
 /// Pairs that are hard in one way or another; none is NaN or infinite.

@@ -17,6 +17,9 @@ mod mutation_campaign;
 mod mutations;
 mod plans;
 mod presets;
+#[cfg(target_os = "linux")]
+#[path = "../common/process.rs"]
+mod process;
 mod reflection;
 mod registry;
 #[path = "../common/rounds.rs"]

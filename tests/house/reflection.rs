@@ -225,8 +225,8 @@ impl<'a> Sky<'a> {
         DVec3::from_slice(&self.text.one("environment_irradiance", &arguments))
     }
 
-    /// Where its first lamp is.
-    fn lamp(&self) -> DVec3 {
+    /// Where its first light is.
+    fn first_light(&self) -> DVec3 {
         DVec3::from_slice(&self.scalars[9..])
     }
 }
@@ -278,7 +278,7 @@ fn rough_mirrors_show_about_what_the_integral_over_microfacets_does() {
         let all = mean(&sky.radiance(&directions, 0.0), one());
         for roughness in [0.3f64, 1.0] {
             let alpha = roughness * roughness;
-            for direction in [DVec3::Y, DVec3::NEG_Y, DVec3::X, sky.lamp()] {
+            for direction in [DVec3::Y, DVec3::NEG_Y, DVec3::X, sky.first_light()] {
                 let (right, up) = direction.any_orthonormal_pair();
                 let lobes: Vec<DVec3> = points
                     .iter()

@@ -95,13 +95,12 @@ fn tiers_are_measured_at_rest_and_their_times_dropped_when_the_picture_changes()
     let other = |lab: &Lab| lab.state().tier_ms(Tier::Strict);
     assert_eq!(other(&lab), None, "nobody has looked at the slider");
     slider(&lab, "accuracy.tier").scroll_to_me();
-    lab.run_steps(3);
-    assert!(
-        unknown(&lab) >= 2,
-        "reference and strict have kernels of their own"
-    );
+    let own = "reference and strict have kernels of their own";
+    wait_until(&mut lab, own, |lab| unknown(lab) >= 2);
     measure_tiers(&mut lab);
-    assert_eq!(unknown(&lab), 0);
+    wait_until(&mut lab, "every tier says its time", |lab| {
+        unknown(lab) == 0
+    });
     let before = Tier::ALL.map(|tier| lab.state().tier_ms(tier));
     click(&mut lab, Role::Button, "Tier strict");
     assert_eq!(
@@ -111,12 +110,11 @@ fn tiers_are_measured_at_rest_and_their_times_dropped_when_the_picture_changes()
     );
 
     lab.state_mut().preset_mut().output.background[0] += 0.25;
-    lab.step();
-    assert!(
-        lab.state().tier_ms(Tier::Draft).is_none()
-            && lab.state().tier_ms(Tier::Reference).is_none(),
-        "another picture"
-    );
+    wait_until(&mut lab, "the times of another picture go", |lab| {
+        [Tier::Draft, Tier::Reference]
+            .iter()
+            .all(|tier| lab.state().tier_ms(*tier).is_none())
+    });
     settle(&mut lab);
     measure_tiers(&mut lab);
 }

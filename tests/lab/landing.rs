@@ -9,7 +9,7 @@ use egui_kittest::kittest::Queryable as _;
 use rasterlab::{
     preset::SceneSource,
     preset_file::{self, Folders, GalleryEntry, PresetFile},
-    scene::builtin,
+    scene::{UpAxis, builtin},
 };
 
 use crate::{
@@ -308,7 +308,40 @@ fn a_model_is_plain_until_a_look_is_chosen_and_after_a_click() {
         undo(&mut lab);
         assert_eq!(stack(&lab), stack_of(&hatch));
     }
+    // Where a value of it was changed it is still on, and a click takes it as it was.
+    let is_plain = |lab: &Lab| is_on(&lab.get_by_role_and_label(Role::Button, "Plain look"));
+    assert!(!is_plain(&lab));
+    click(&mut lab, Role::Button, "Plain look");
+    let background = lab.state().preset_file().preset.output.background;
+    lab.state_mut().preset_mut().output.background[0] += 0.25;
+    settle(&mut lab);
+    assert!(is_plain(&lab) && lab.query_by_label("unsaved").is_some());
+    click(&mut lab, Role::Button, "Plain look");
+    assert_eq!(
+        lab.state().preset_file().preset.output.background,
+        background
+    );
+    assert!(is_plain(&lab) && lab.query_by_label("unsaved").is_none());
     assert!(error_lines(&lab).is_empty(), "{:?}", error_lines(&lab));
+}
+
+#[test]
+fn the_axis_that_was_chosen_to_be_up_in_a_model_is_kept_for_it() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let model = model(folder.path());
+    let Some(mut lab) = lab(&model.to_string_lossy()) else {
+        return;
+    };
+    let up = |lab: &Lab| lab.state().preset_file().preset.parts.up;
+    assert_eq!(up(&lab), UpAxis::Y);
+    lab.state_mut().preset_mut().parts.up = UpAxis::X;
+    settle(&mut lab);
+    let other = folder.path().join("other.glb");
+    std::fs::write(&other, tiny_glb()).expect("a file");
+    for (opened, axis) in [(&other, UpAxis::Y), (&model, UpAxis::X)] {
+        drop_files(&mut lab, &[opened]);
+        assert_eq!(up(&lab), axis, "{}", opened.display());
+    }
 }
 
 #[test]

@@ -32,7 +32,14 @@ mod palette;
 mod preparing;
 mod preset_browser;
 mod probe;
+#[cfg(target_os = "linux")]
+#[path = "../common/process.rs"]
+mod process;
+#[cfg(target_os = "linux")]
+mod random_edits;
 mod review;
+#[path = "../common/rounds.rs"]
+mod rounds;
 mod scopes;
 mod settings;
 mod sweep;

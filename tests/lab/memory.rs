@@ -7,22 +7,7 @@ use std::time::{Duration, Instant};
 use egui::{Key, Modifiers, Role};
 use egui_kittest::kittest::Queryable as _;
 
-use crate::harness::*;
-
-/// Memory of this process that does not come from files, MB.
-fn resident_mb() -> f64 {
-    let status = std::fs::read_to_string("/proc/self/status").expect("Linux tells");
-    let line = status
-        .lines()
-        .find_map(|line| line.strip_prefix("RssAnon:"))
-        .expect("its anonymous memory");
-    line.trim()
-        .trim_end_matches("kB")
-        .trim()
-        .parse::<f64>()
-        .expect("a number")
-        / 1024.0
-}
+use crate::{harness::*, process::resident_mb};
 
 /// Measures the options of depth.
 fn trade(lab: &mut Lab) {

@@ -92,7 +92,7 @@ fn a_measured_combination_is_a_point_and_a_click_on_it_switches_the_preset_in_on
     assert!(lab.query_by_label("Point depth=log16").is_some());
     let copied = copied_table(&mut lab);
     assert!(
-        copied.starts_with("depth,ms p5,ms p50,ms p95,samples,by rounding ppm,")
+        copied.starts_with("depth,ms p5,ms p50,ms p95,samples,by rounding px,")
             && copied.lines().count() == 1 + DepthFormat::ALL.len(),
         "{copied}"
     );

@@ -46,6 +46,11 @@ const EXCEPTIONS: &[(&str, f64, &str)] = &[
         11.5,
         "a tube is one pixel wide at every size and covers twice as much of half a picture",
     ),
+    (
+        "survey",
+        5.0,
+        "a point is at least the pixel in which it lies, which covers more of a smaller picture",
+    ),
 ];
 const CELL: &str = "cells and lines are whole pixels, or have a rim of one";
 const DOTS: &str = "a dot has a soft rim of one pixel, and where dots overlap the brightest shows";

@@ -3,6 +3,8 @@
 
 use std::path::{Path, PathBuf, is_separator};
 
+use crate::params::likeness;
+
 /// A file or folder.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Entry {
@@ -59,6 +61,24 @@ impl Listing {
                 && (begins.starts_with('.') || !entry.name.starts_with('.'))
         };
         self.entries.iter().flatten().filter(is_match).collect()
+    }
+
+    /// What may be meant where nothing matches: entries whose names have the typed one in them, or
+    /// are like it.
+    pub fn near(&self, typed: &str, extensions: &[&str]) -> Vec<&Entry> {
+        let name = name_of(typed);
+        let is_near = |entry: &&Entry| {
+            let stem = entry
+                .name
+                .rsplit_once('.')
+                .map_or(&*entry.name, |parts| parts.0);
+            entry.name.to_lowercase().contains(&name.to_lowercase())
+                || [stem, &entry.name]
+                    .iter()
+                    .any(|known| likeness(name, known).is_some())
+        };
+        let all = self.matches(&typed[..typed.len() - name.len()], extensions);
+        all.into_iter().filter(is_near).collect()
     }
 }
 
@@ -200,6 +220,13 @@ mod tests {
         );
         assert_eq!(names(&listing.matches(".", TYPES)), [".hidden.glb"]);
         assert_eq!(names(&listing.matches("notes", TYPES)), [""; 0]);
+        for (typed, near) in [
+            ("/a/ox", "fox.glb"),
+            ("forset", "forest.glb"),
+            ("zo0", "zoo"),
+        ] {
+            assert_eq!(names(&listing.near(typed, TYPES)), [near]);
+        }
     }
 
     #[test]

@@ -52,7 +52,8 @@ fn open_preset(app: &mut App, mut opened: PresetFile) {
 }
 
 /// Opens a preset or model, after its scene has been read, and says `said` when it is shown.
-pub fn begin(app: &mut App, opened: PresetFile, manner: Manner, said: String) {
+pub fn begin(app: &mut App, mut opened: PresetFile, manner: Manner, said: String) {
+    _ = app.state.settings.up_axes.give(&mut opened);
     let open = &app.state.session.preset_file;
     // A preset of the same model comes with its camera and clip.
     let is_of_this_model = matches!(opened.preset.scene, SceneSource::File(_))

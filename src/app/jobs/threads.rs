@@ -2,7 +2,7 @@
 //! and a job that waits lets the next frame be drawn.
 
 #[cfg(not(target_arch = "wasm32"))]
-pub use native::{pause, start};
+pub use native::{named, pause, start};
 #[cfg(target_arch = "wasm32")]
 pub use page::{pause, start, wait};
 
@@ -16,6 +16,17 @@ mod native {
 
     use pollster::FutureExt as _;
 
+    /// Stack of a thread, as the main thread has on Linux. What a picture needs without optimization
+    /// does not fit into the 2 MiB of a thread that asks for nothing.
+    const STACK_BYTES: usize = 8 << 20;
+
+    /// A thread of this name that draws.
+    pub fn named(name: &str) -> thread::Builder {
+        thread::Builder::new()
+            .name(name.into())
+            .stack_size(STACK_BYTES)
+    }
+
     /// Starts work on a thread of this name. What is returned waits for its end; there is nothing to
     /// wait for in a page.
     ///
@@ -25,8 +36,7 @@ mod native {
         name: &str,
         work: impl FnOnce() -> F + Send + 'static,
     ) -> io::Result<Option<JoinHandle<()>>> {
-        let named = thread::Builder::new().name(name.into());
-        named.spawn(move || work().block_on()).map(Some)
+        named(name).spawn(move || work().block_on()).map(Some)
     }
 
     /// Waits so long.

@@ -14,7 +14,7 @@ use web_time::Instant;
 use crate::app::panels::panel::Panel;
 use crate::{
     app::{
-        jobs::{Computing, memory},
+        jobs::{Computing, memory, threads},
         shell::{command::Commands, log::Level, state::State},
         trade::pace::about,
         widgets::theme,
@@ -140,10 +140,7 @@ impl Extremes {
             progress.is_over = true;
             ctx.request_repaint();
         };
-        if let Err(error) = std::thread::Builder::new()
-            .name("extremes".into())
-            .spawn(work)
-        {
+        if let Err(error) = threads::named("extremes").spawn(work) {
             *run.progress() = Progress {
                 error: Some(format!("no thread could be started: {error}")),
                 is_over: true,

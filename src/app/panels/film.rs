@@ -52,6 +52,9 @@ const TURNTABLES: [(Option<Turntable>, &str, &str); 3] = [
     ),
 ];
 
+/// What is said of a film of a scene that stands still.
+const NOTHING_MOVES: &str = "Nothing in this film moves, so every frame shows the same. A turntable turns it; a clip, a spin or keys move the scene.";
+
 /// Whether the film goes from the look of the kept preset to that of the open one.
 const LOOKS: [(bool, &str, &str); 2] = [
     (false, "This preset", "Its own look in every frame"),
@@ -358,6 +361,11 @@ impl Panel for FilmPanel {
                     .form
                     .as_mut()
                     .is_some_and(|form| film_ui(ui, form, &clock, takes_focus, commands));
+                let form = self.form.as_ref();
+                let moves = |form: &Form| form.turntable.is_some() || form.is_from_a;
+                if !form.is_some_and(moves) && !state.session.preset().is_moving() {
+                    theme::notice(ui, theme::amber(), NOTHING_MOVES);
+                }
                 if before != self.form.as_ref().map(|form| form.request(false)) {
                     // What was agreed to, or failed, was another film.
                     self.failure = None;

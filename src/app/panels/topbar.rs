@@ -22,7 +22,7 @@ use crate::app::{
         theme::{self, ThemeChoice},
     },
 };
-use crate::preset_file::{PLAIN, PresetFile};
+use crate::preset_file::PLAIN;
 
 /// The bar at the top: menus, the open preset, the adapter, and the cost and error of the picture.
 pub struct TopBar;
@@ -269,7 +269,7 @@ fn name_ui(ui: &mut Ui, state: &State, commands: &Commands) {
             .on_hover_text(file);
     });
     if look > 0.0 {
-        plain_ui(ui, open, is_modified, commands);
+        plain_ui(ui, [open.look_id() == PLAIN, is_modified], commands);
     }
     if is_modified {
         dot(ui, theme::accent());
@@ -279,16 +279,20 @@ fn name_ui(ui: &mut Ui, state: &State, commands: &Commands) {
     }
 }
 
-/// A button of the plain look, which is pressed while that is on. Of another look the name tells.
-fn plain_ui(ui: &mut Ui, open: &PresetFile, is_modified: bool, commands: &Commands) {
-    let is_on = open.look_id() == PLAIN && !is_modified;
-    let hint = match is_on {
-        true => "The plain look is on: the scene's own materials under a sun with soft shadows",
-        false => "Show this scene in the plain look",
+/// A button of the plain look, which is pressed while that is on, also where its values were changed.
+/// Of another look the name tells.
+fn plain_ui(ui: &mut Ui, [is_on, is_modified]: [bool; 2], commands: &Commands) {
+    let hint = match (is_on, is_modified) {
+        (true, false) => {
+            "The plain look is on: the scene's own materials under a sun with soft shadows"
+        }
+        (true, true) => "The plain look is on, with values changed: a click takes it as it was",
+        _ => "Show this scene in the plain look",
     };
     let button = egui::Button::new("Plain").small().selected(is_on);
     let button = ui.add(button).on_hover_text(hint);
-    if button.accessible_name(Action::Plain.label()).clicked() && !is_on {
+    let is_clicked = button.accessible_name(Action::Plain.label()).clicked();
+    if is_clicked && (!is_on || is_modified) {
         commands.perform(Action::Plain);
     }
 }

@@ -9,7 +9,10 @@ use super::{
     timings::{Cost, Summary},
     verification::Verdict,
 };
-use crate::app::widgets::{text::group_digits, theme};
+use crate::app::widgets::{
+    text::{group_digits, short},
+    theme,
+};
 
 /// What the two counts of wrong pixels mean, wherever they stand.
 pub const WRONG_HINT: &str = "Wrong: pixels that show another triangle than the oracle draws from the same snapped corners, so a fault of the \
@@ -62,7 +65,10 @@ pub fn error_line(verdict: Option<&Verdict>, shown: Option<&Inputs>) -> (Color32
         return (
             theme::amber(),
             format!("{text} · stale"),
-            format!("Measured on an earlier picture. {detail}"),
+            format!(
+                "Measured on an earlier picture, of {} × {} px. {detail}",
+                of.view.width, of.view.height
+            ),
         );
     }
     (error_color(findings), text, detail)
@@ -119,8 +125,12 @@ pub fn color_text(max_delta: u8) -> String {
 
 fn details(findings: &Findings) -> String {
     let report = &findings.accuracy;
+    let count = |count: u64| {
+        let ppm = 1e6 * count as f64 / report.pixels.max(1) as f64;
+        format!("{} ({} ppm)", group_digits(count), short(ppm))
+    };
     let against_true = match findings.wrong_against_true() {
-        Some(count) => format!("{} differ by rounding", group_digits(count)),
+        Some(rounded) => format!("{} differ by rounding", count(rounded)),
         None => {
             "not compared with the true positions, because its effects are not reproducible".into()
         }
@@ -129,7 +139,7 @@ fn details(findings: &Findings) -> String {
         "{} pixels compared with the oracle: {} wrong, {against_true}; {} explained by a vertex one snap unit \
          away, {} depth ties, {} holes, {} drawn twice; color max Δ {} and RMS {:.3} of 255.\n\n{WRONG_HINT}",
         group_digits(report.pixels),
-        group_digits(report.wrong_triangles),
+        count(report.wrong_triangles),
         report.explained_by_snap,
         report.depth_band_pixels,
         report.holes,

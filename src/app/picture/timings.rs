@@ -294,7 +294,8 @@ fn push<T>(list: &mut VecDeque<T>, new: impl IntoIterator<Item = T>, most: usize
 }
 
 /// What a measurement in the header is of: the preset, by its file, its scene, and the size of the
-/// picture. When one of them changes, neither milliseconds nor a verdict of before is shown.
+/// picture. When one of them changes, no milliseconds of before are shown, and no verdict unless only
+/// the size did.
 #[derive(Clone, Debug)]
 pub struct Measurable<File>(Option<(File, [u32; 2])>);
 
@@ -305,12 +306,15 @@ impl<File> Default for Measurable<File> {
 }
 
 impl<File: PartialEq> Measurable<File> {
-    /// Notes what is shown now. Returns true if measurements of before do not count for it.
-    pub fn resets(&mut self, file: File, size: [u32; 2]) -> bool {
-        let now = Some((file, size));
-        let is_other = self.0.is_some() && self.0 != now;
-        self.0 = now;
-        is_other
+    /// Notes what is shown now. Returns whether milliseconds of before do not count for it, and
+    /// whether it is of another file, whose verdict does not either.
+    pub fn resets(&mut self, file: File, size: [u32; 2]) -> [bool; 2] {
+        let before = self.0.replace((file, size));
+        let Some(((before, size_before), (now, _))) = before.zip(self.0.as_ref()) else {
+            return [false; 2];
+        };
+        let is_other = before != *now;
+        [is_other || size_before != size, is_other]
     }
 }
 
@@ -436,10 +440,15 @@ mod tests {
     #[test]
     fn another_preset_or_size_resets_what_was_measured() {
         let mut shown = Measurable::default();
-        assert!(!shown.resets("hatch", [8, 8]), "the first picture");
-        assert!(!shown.resets("hatch", [8, 8]));
-        assert!(shown.resets("hatch", [9, 8]) && !shown.resets("hatch", [9, 8]));
-        assert!(shown.resets("toon", [9, 8]));
+        for (file, size, resets) in [
+            ("hatch", [8, 8], [false, false]),
+            ("hatch", [8, 8], [false, false]),
+            ("hatch", [9, 8], [true, false]),
+            ("hatch", [9, 8], [false, false]),
+            ("toon", [9, 8], [true, true]),
+        ] {
+            assert_eq!(shown.resets(file, size), resets, "{file} {size:?}");
+        }
     }
 
     #[test]

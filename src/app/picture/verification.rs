@@ -20,7 +20,7 @@ struct Judgement {
     work: Arc<Work>,
     pixels: f64,
     began: Instant,
-    /// It is of a preset or a size that is not shown any more.
+    /// It is of a preset that is not shown any more.
     is_outdated: bool,
 }
 
@@ -105,7 +105,7 @@ impl Verification {
         work
     }
 
-    /// A judgement ended. Returns false if it is of a preset or a size that is not shown any more.
+    /// A judgement ended. Returns false if it is of a preset that is not shown any more.
     pub fn ended(&mut self, work: &Arc<Work>) -> bool {
         let Some(at) = self
             .running
@@ -133,8 +133,7 @@ impl Verification {
             .for_each(|judgement| judgement.work.cancel());
     }
 
-    /// Forgets the verdict, because another preset or another size is shown, and ends the
-    /// judgements under way.
+    /// Forgets the verdict, because another preset is shown, and ends the judgements under way.
     pub fn reset(&mut self) {
         self.verdict = None;
         self.cancel();

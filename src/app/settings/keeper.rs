@@ -22,7 +22,8 @@ use crate::{
     preset_file::Folders,
 };
 
-/// Changes are written after this long without another, seconds.
+/// Changes are written together this long after the first of them, seconds. Of a drag that goes on,
+/// a crash takes the last second.
 const REST_S: f64 = 1.0;
 
 /// Keeps settings and session in a folder. Without a folder, as in tests, it keeps nothing.
@@ -44,9 +45,10 @@ pub struct Keeper {
 /// A file to be written: a function that does, and returns why it could not.
 type Write = Box<dyn FnOnce() -> Result<(), String> + Send>;
 
-/// A value that is written when it has come to rest.
+/// A value that is written at most once in [`REST_S`].
 struct Resting<T> {
     latest: T,
+    /// When the first change was that is not written yet.
     changed_at_s: Option<f64>,
 }
 
@@ -61,7 +63,8 @@ impl<T: PartialEq + Clone> Resting<T> {
     /// Takes the value of this frame. True if it must be written now.
     fn follow(&mut self, now: &T, now_s: f64) -> bool {
         if self.latest != *now {
-            (self.latest, self.changed_at_s) = (now.clone(), Some(now_s));
+            self.latest = now.clone();
+            self.changed_at_s.get_or_insert(now_s);
         }
         self.changed_at_s
             .take_if(|changed_at_s| now_s - *changed_at_s >= REST_S)
@@ -150,7 +153,7 @@ impl Keeper {
         self.replaces_session = true;
     }
 
-    /// Writes what has changed and come to rest. Returns an error of an earlier write, and after
+    /// Writes what has changed and waited. Returns an error of an earlier write, and after
     /// how many seconds to look again.
     pub fn follow(
         &mut self,
@@ -349,14 +352,16 @@ mod tests {
     }
 
     #[test]
-    fn settings_are_written_when_they_rest_and_read_at_the_next_start() {
+    fn settings_are_written_a_second_after_a_change_and_read_at_the_next_start() {
         let folder = tempfile::tempdir().expect("a temporary folder");
         let session = session_of("teapot");
         let (mut first, mut settings, _) = keeper(folder.path());
         settings.scale = 1.5;
         let (_, wait_s) = first.follow(&settings, without_review(&session), 10.0);
         assert_eq!(wait_s, Some(REST_S));
-        first.follow(&settings, without_review(&session), 10.5);
+        settings.scale = 1.25;
+        let (_, wait_s) = first.follow(&settings, without_review(&session), 10.75);
+        assert_eq!(wait_s, Some(0.25));
         first.follow(&settings, without_review(&session), 11.1);
         drop(first);
         assert_eq!(keeper(folder.path()).1, settings);

@@ -7,10 +7,13 @@ pub mod keeper;
 pub mod keymap;
 pub mod last_session;
 pub mod recents;
+pub mod up_axes;
 
 use serde::{Deserialize, Deserializer, Serialize};
 
-use self::{browsing::Browsing, film::FilmSettings, keymap::Keymap, recents::Recents};
+use self::{
+    browsing::Browsing, film::FilmSettings, keymap::Keymap, recents::Recents, up_axes::UpAxes,
+};
 use crate::{
     app::{
         files::plain_file::{checked, number_in, write_rounded},
@@ -41,6 +44,9 @@ pub struct Settings {
     pub scale: f32,
     #[serde(rename = "recent")]
     pub recents: Recents,
+    /// Models whose axis that is up the user chose.
+    #[serde(rename = "up")]
+    pub up_axes: UpAxes,
     pub window: WindowSize,
     #[serde(rename = "panels")]
     pub open: OpenPanels,
@@ -61,6 +67,7 @@ impl Default for Settings {
             theme: ThemeChoice::default(),
             scale: 1.0,
             recents: Recents::default(),
+            up_axes: UpAxes::default(),
             window: WindowSize::default(),
             open: OpenPanels::default(),
             widths: PanelWidths::default(),
@@ -237,6 +244,8 @@ fn panel_width<'de, D: Deserializer<'de>>(from: D) -> Result<Option<f32>, D::Err
 
 #[cfg(test)]
 mod tests {
+    use std::collections::BTreeMap;
+
     use egui::{Key, Modifiers};
 
     use super::{
@@ -261,6 +270,9 @@ mod tests {
             theme: ThemeChoice::Light,
             scale: 1.3,
             recents: ["/models/a b.glb", "/presets/\"x\".toml"].iter().collect(),
+            up_axes: BTreeMap::from([["/models/a.b.ply", "-z"].map(str::to_owned).into()])
+                .try_into()
+                .expect("an axis"),
             window: WindowSize {
                 size: [900.0, 600.0],
                 is_maximized: true,

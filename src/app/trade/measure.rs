@@ -97,7 +97,9 @@ pub async fn measure(
     let rows = trade(gpu, preset, scene, title, &options, &reference, &mut watch)
         .await
         .map_err(|e| e.to_string())?;
-    Ok(rows.into_iter().map(|row| point(row, axes)).collect())
+    let pixels = view.pixels() as f64;
+    let points = rows.into_iter().map(|row| point(row, axes, pixels));
+    Ok(points.collect())
 }
 
 /// Reports a measurement to the window, and waits while the person works there.
@@ -142,14 +144,16 @@ impl Watch for Watched<'_> {
     }
 }
 
-fn point(row: TradeRow, axes: &[&'static Axis]) -> Point {
+/// A combination that was measured on a picture of so many pixels.
+fn point(row: TradeRow, axes: &[&'static Axis], pixels: f64) -> Point {
     let mut pins = PinnedOptions::default();
     axes.iter()
         .for_each(|axis| pins.set(axis, row.pins.get(axis)));
     let errors = Metric::ALL.map(|metric| {
         let error = row.error.as_ref()?;
         Some(match metric {
-            Metric::Wrong => error.wrong_ppm,
+            // Of the picture's pixels, also where another number of samples was drawn.
+            Metric::Wrong => (error.wrong_ppm * pixels * 1e-6).round(),
             Metric::Color => error.max_color_delta.into(),
             Metric::Light => error.wrong_light_ppm?,
             Metric::Coverage => error.holes_per_mpx + error.double_hits_per_mpx,
@@ -157,6 +161,7 @@ fn point(row: TradeRow, axes: &[&'static Axis]) -> Point {
     });
     let more = row.error.iter().flat_map(|error| {
         [
+            ("by rounding ppm", error.wrong_ppm),
             ("wrong depth winners ppm", error.wrong_depth_ppm),
             ("color RMS of 255", error.rms_color_delta),
             (

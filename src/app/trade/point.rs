@@ -44,7 +44,7 @@ impl Metric {
 
     pub const fn unit(self) -> &'static str {
         match self {
-            Self::Wrong => "ppm",
+            Self::Wrong => "px",
             Self::Color => "of 255",
             Self::Coverage => "per Mpx",
             Self::Light => "ppm",
@@ -252,7 +252,7 @@ mod tests {
         let lines: Vec<_> = text.lines().collect();
         assert_eq!(
             lines[0],
-            "coverage,depth,ms p5,ms p50,ms p95,samples,by rounding ppm,color difference of 255,holes and doubles per Mpx,bytes,note"
+            "coverage,depth,ms p5,ms p50,ms p95,samples,by rounding px,color difference of 255,holes and doubles per Mpx,bytes,note"
         );
         let ms = points[0].ms.expect("it was timed");
         let expected = format!(

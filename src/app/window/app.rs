@@ -159,6 +159,9 @@ impl App {
         ask_about(start.asks, start.crashed, &mut panels.dialogs);
         let mut session = start.session;
         session.chose_look = is_named;
+        if settings.up_axes.give(&mut session.preset_file) {
+            session.remember(session.preset_file.clone());
+        }
         // The start preset plays, unless on a software adapter, which draws moving pictures at half
         // their size: there its own moment stands whole. A preset that the user named does not play.
         session.playback.playing = options.open.is_none()

@@ -24,6 +24,9 @@ impl App {
             settings: false,
             ..self.fold.kept(*open)
         };
+        settings
+            .up_axes
+            .follow(&session.preset_file, session.as_filed());
         settings.browsing = self.panels.browser.browsing();
         if settings.film != *self.panels.film.last() {
             settings.film = self.panels.film.last().clone();

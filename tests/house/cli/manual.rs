@@ -34,22 +34,31 @@ fn every_command_has_a_manual_page_with_its_flags() {
 }
 
 #[test]
-fn help_lists_what_every_command_takes_apart_and_not_what_one_refuses() {
+fn help_lists_shared_options_apart_and_not_what_a_command_refuses() {
     let place = Place::new();
-    for (command, takes_look) in [
-        ("list", false),
-        ("check", false),
-        ("render", true),
-        ("sweep", true),
+    for (command, taken, refused) in [
+        ("list", "--json", "--adapter <"),
+        ("check", "--adapter <", "--preset <"),
+        ("bench", "--preset <", "--force"),
+        ("render", "--preset <", "--log"),
     ] {
         let help = place.run(&format!("{command} --help")).out;
-        let (own, shared) = help.split_once("Options of every command:").unwrap();
-        assert!(
-            !own.contains("--adapter") && shared.contains("--adapter"),
-            "{help}"
-        );
-        assert_eq!(shared.contains("--preset "), takes_look, "{help}");
-        assert!(!help.contains("--log"), "{help}");
+        let (own, shared) = help.split_once("Shared options:").unwrap();
+        assert!(!own.contains(taken) && shared.contains(taken), "{help}");
+        assert!(!help.contains(refused), "{help}");
+    }
+    let help = place.run("completions --help").out;
+    assert!(!help.contains("Shared options"), "{help}");
+    // What they refuse is refused at once, before or behind the command.
+    for (line, option) in [
+        ("--adapter x list", "--adapter"),
+        ("gallery --device-memory 1GiB", "--device-memory"),
+        ("completions bash --quiet", "--quiet"),
+        ("adapters --set facet", "--set"),
+        ("bless facet --adapter cpu", "--adapter"),
+        ("list --preset hatch", "--preset"),
+    ] {
+        place.play(&format!("$2 {line}\n! {option} has no meaning for "));
     }
 }
 

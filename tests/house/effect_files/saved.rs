@@ -14,6 +14,8 @@ use rasterlab::{
     shader::{Fetch, KernelKey, Pass, library::Library, link},
 };
 
+use crate::process::resident_mb;
+
 const SAVES: u32 = 2000;
 /// Saves after which the memory is compared.
 const FIRST_SAVES: u32 = 100;
@@ -33,21 +35,6 @@ fn text(turn: u32) -> String {
          if p.way_{turn} == INK_WAY_{turn}_PLAIN {{ s.color.x = {turn}.0 * 0.0001; }}\n    \
          s.color = vec4f(mixed_{turn}(s.color.x, p.amount), p.amount, mixed_{turn}(s.normal.x, s.normal.y), 1.0);\n    return s;\n}}\n"
     )
-}
-
-/// Memory of this process that does not come from files, MB.
-fn resident_mb() -> f64 {
-    let status = std::fs::read_to_string("/proc/self/status").expect("Linux tells");
-    let line = status
-        .lines()
-        .find_map(|line| line.strip_prefix("RssAnon:"))
-        .expect("its anonymous memory");
-    line.trim()
-        .trim_end_matches("kB")
-        .trim()
-        .parse::<f64>()
-        .expect("a number")
-        / 1024.0
 }
 
 /// Run by the next test in a process of its own, whose memory nothing else uses.

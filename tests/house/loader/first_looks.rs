@@ -78,6 +78,45 @@ fn a_model_that_stands_on_another_plane_is_set_upright_told_once_and_kept() {
 }
 
 #[test]
+fn a_foot_tells_the_axis_where_the_place_does_not() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    // The tower in a corner of its axes, and about the middle of its height.
+    for [x, z] in [[0.5, 0.0], [0.0, -1.5]] {
+        for up in [UpAxis::Z, UpAxis::Y] {
+            let moved = |line: &str| match line.split_whitespace().collect::<Vec<_>>()[..] {
+                ["v", a, b, c] => {
+                    let [a, b, c] = [a, b, c].map(|word| word.parse::<f64>().expect("a number"));
+                    let [a, b, c] = [a + x, b + x, c + z];
+                    match up {
+                        UpAxis::Z => format!("v {a} {b} {c}\n"),
+                        _ => format!("v {a} {c} {}\n", -b),
+                    }
+                }
+                _ => format!("{line}\n"),
+            };
+            let text: String = tower().lines().map(moved).collect();
+            let path = written(folder.path(), "tower.obj", &text);
+            assert_eq!(opened(&path).0.preset.parts.up, up, "{text}");
+        }
+    }
+}
+
+#[test]
+fn a_flat_model_is_looked_at_from_higher() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let down = |height: f64| {
+        let text = format!(
+            "v -5 0 5\nv 5 0 5\nv 5 0 -5\nv -5 0 -5\nv 0 {height} 0\nf 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\n"
+        );
+        let (file, scene) = opened(&written(folder.path(), "y-up.obj", text));
+        -file.preset.camera_for(&scene, 4.0 / 3.0).forward().y
+    };
+    let [flat, low, high] = [0.2, 1.5, 6.0].map(down);
+    assert!(flat > low && low > high, "{flat} {low} {high}");
+    assert!(flat > 0.6 && high < 0.4, "{flat} {high}");
+}
+
+#[test]
 fn presets_and_gltf_files_are_not_turned_unless_they_say_so() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     written(folder.path(), "tower.obj", tower());
@@ -131,6 +170,10 @@ fn lights_of_hundreds_of_candelas_are_dimmed_in_the_plain_look_alone() {
         landed.settle(&scene, true);
         assert_eq!(lights(&landed.preset), Some(1.0));
         assert_eq!(landed.preset.dimmed_lights(&scene).is_some(), dimmed < 1.0);
+        // A note on them holds until they are dimmed.
+        let notes = |preset: &Preset| preset.notes_on(&scene).count();
+        let too_strong = usize::from(dimmed < 1.0);
+        assert_eq!(notes(&landed.preset), notes(&file.preset) + too_strong);
         // What a person has set stays.
         let mut plain =
             preset_file::open(&path.to_string_lossy(), &Folders::default()).expect("it");

@@ -68,6 +68,12 @@ impl Film {
         self.preset_file.preset.output.size
     }
 
+    /// Do several frames show the same, since nothing moves?
+    pub fn is_still(&self) -> bool {
+        let is_turned = self.turntable.is_some() || self.toward.is_some();
+        self.schedule.total > 1 && !is_turned && !self.preset_file.preset.is_moving()
+    }
+
     pub fn is_looping(&self) -> bool {
         self.preset_file.preset.clock.is_looping
     }

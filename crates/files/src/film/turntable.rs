@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use crate::{
     math::rotation_y,
-    preset::{FRAMING_DIRECTION, Preset, turned_all_around},
+    preset::{Preset, turned_all_around},
     scene::{Bounds, Scene, camera::Camera},
 };
 
@@ -60,7 +60,7 @@ pub fn all_around(preset: &Preset, scene: &Scene) -> Option<Camera> {
     let center = bounds.center();
     let framed = Camera::around(
         &turned_all_around(&points, center),
-        FRAMING_DIRECTION,
+        preset.looks_along(&points),
         preset.frame(width / height),
     );
     // The camera goes around the axis of the scene.

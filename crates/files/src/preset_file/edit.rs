@@ -173,7 +173,7 @@ pub fn set(preset_file: &mut PresetFile, path: &str, value: &str) -> Result<(), 
         Target::Field(..) | Target::Setting(_) | Target::Stack | Target::Animation(_, Some(_))
             if is_missing =>
         {
-            return Err(wrong(format!("needs a value, as in --set {path}=VALUE")));
+            return Err(wrong(format!("needs a value, as in {path}=VALUE")));
         }
         Target::Effect(_) | Target::Section(_) => {
             return Err(wrong("takes no value; name one of its keys".into()));

@@ -129,6 +129,7 @@ impl ModelFormat {
             Reader::Mesh(_, usual) | Reader::Cloud(_, usual) => UpAxis::guessed(
                 &scene.bounds(),
                 [&*scene.name].into_iter().chain(names),
+                || scene.foot_axis(),
                 usual,
             ),
         }

@@ -289,8 +289,8 @@ pub fn open(what: &str, folders: &Folders) -> Result<PresetFile, PresetError> {
     })
 }
 
-/// `; did you mean "facet" (Half cut)?`: the presets whose ids or names are nearest to `what`, or
-/// where all of them are listed.
+/// `; did you mean "facet" (Half cut)?`: the presets whose ids or names are nearest to `what`; empty
+/// where none is near.
 fn near_presets(what: &str, entries: &[GalleryEntry]) -> String {
     let near = entries.iter().filter_map(|entry| {
         let names = [&entry.id, entry.title()].into_iter();
@@ -308,12 +308,9 @@ fn near_presets(what: &str, entries: &[GalleryEntry]) -> String {
         title => format!("{:?} ({title})", entry.id),
     };
     let near: Vec<String> = near.iter().take(MAX_NEAR).map(described).collect();
-    if near.is_empty() && cfg!(target_arch = "wasm32") {
-        String::new()
-    } else if near.is_empty() {
-        "; rasterlab list presets shows all of them".into()
-    } else {
-        format!("; did you mean {}?", near.join(" or "))
+    match near.is_empty() {
+        true => String::new(),
+        false => format!("; did you mean {}?", near.join(" or ")),
     }
 }
 

@@ -23,8 +23,7 @@ pub enum SceneError {
     Absent { path: String },
     #[error(transparent)]
     Model(#[from] gltf::LoadError),
-    #[error("scene.only and scene.hidden leave no part of the scene; show some part of it{how}",
-        how = if cfg!(target_arch = "wasm32") { "" } else { " (rasterlab parts SCENE lists them)" })]
+    #[error("scene.only and scene.hidden leave no part of the scene; show some part of it")]
     NothingShown,
     #[error("{file}, the picture of scene.surroundings, {reason}")]
     Surroundings { file: String, reason: String },

@@ -18,7 +18,7 @@ impl PresetFile {
         if scene_of(self) != scene_of(other) {
             return Err(format!(
                 "{} shows the scene {} and {} shows {}; a preset goes toward another one on the same scene, \
-                 so give both one, for instance with --set scene.builtin=teapot",
+                 so give both one",
                 self.id,
                 self.scene_name(),
                 other.id,

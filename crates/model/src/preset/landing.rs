@@ -75,13 +75,8 @@ impl Preset {
     pub fn left_out_on(&self, own: &Self) -> Vec<String> {
         let (clip, own_clip) = (&self.playback.clip, &own.playback.clip);
         let is_left = !clip.is_empty() && own_clip.is_empty();
-        let or = match cfg!(target_arch = "wasm32") {
-            true => "",
-            false => ", or with --set scene.clip=NAME",
-        };
-        let clip = format!(
-            "scene.clip {clip:?} was left out; choose one that this model has, if any, under Clips{or}"
-        );
+        let clip =
+            format!("scene.clip {clip:?} was left out; choose one that this model has, if any");
         is_left.then_some(clip).into_iter().collect()
     }
 }

@@ -38,7 +38,7 @@ use crate::{
         needs,
         parts::ShownParts,
         pose::{Motion, Pose, scene_from_nodes},
-        punctual::{PlacedLight, SceneLight, dimmed},
+        punctual::{PlacedLight, SceneLight, TOO_STRONG, dimmed},
         shadow_resolution::ShadowResolution,
         view::{SceneState, View},
     },
@@ -143,6 +143,9 @@ impl Default for Preset {
 
 /// The view direction of a camera that frames the scene: from the front, slightly right and above.
 pub const FRAMING_DIRECTION: DVec3 = DVec3::new(-0.45, -0.42, -1.0);
+
+/// Height over width below which a model is looked at from higher.
+const FLAT: f64 = 0.3;
 
 /// The points as they come to lie while a scene turns once about a vertical axis through `center`.
 pub fn turned_all_around(points: &[DVec3], center: DVec3) -> Vec<DVec3> {
@@ -317,6 +320,13 @@ impl Preset {
         (!is_led && lights > 2.0 * dimmed(times)).then(|| dimmed(times))
     }
 
+    /// The notes on `scene` without that on its lights where they are dimmed.
+    pub fn notes_on<'a>(&self, scene: &'a Scene) -> impl Iterator<Item = &'a String> {
+        let is_dimmed = self.dimmed_lights(scene).is_none();
+        let holds = move |note: &&String| !(is_dimmed && note.contains(TOO_STRONG));
+        scene.notes.iter().filter(holds)
+    }
+
     /// Dims lights of `scene` that are far too strong.
     pub fn dim_lights(&mut self, scene: &Scene) {
         if let Some(dimmed) = self.dimmed_lights(scene)
@@ -335,11 +345,8 @@ impl Preset {
             }))
         };
         let framing = || {
-            Camera::around(
-                &self.framing_points(scene),
-                FRAMING_DIRECTION,
-                self.frame(aspect),
-            )
+            let points = self.framing_points(scene);
+            Camera::around(&points, self.looks_along(&points), self.frame(aspect))
         };
         self.camera
             .unwrap_or_else(|| own().unwrap_or_else(framing).counted_from(self.origin))
@@ -352,6 +359,18 @@ impl Preset {
             .cameras
             .get(index)
             .filter(|_| self.scene_camera != NO_CAMERA)
+    }
+
+    /// The direction in which the automatic camera looks at these points: at a model that is flatter
+    /// than [`FLAT`] the steeper the flatter it is, so that the picture is filled down, too.
+    pub fn looks_along(&self, points: &[DVec3]) -> DVec3 {
+        let mut bounds = Bounds::EMPTY;
+        points.iter().for_each(|point| bounds.include(*point));
+        let extent = bounds.max - bounds.min;
+        let is_model = matches!(self.scene, SceneSource::File(_));
+        let lacks = FLAT - extent.y / extent.x.max(extent.z);
+        let steeper = if is_model && lacks > 0.0 { lacks } else { 0.0 };
+        FRAMING_DIRECTION - DVec3::Y * (1.6 * steeper)
     }
 
     /// What the automatic camera fills of the picture: of a model as much as there is, of a built-in

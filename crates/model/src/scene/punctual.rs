@@ -129,6 +129,9 @@ impl Scene {
     }
 }
 
+/// Stands in the note on lights that are far too strong, which no longer holds once they are dimmed.
+pub const TOO_STRONG: &str = "times as strong as what a picture holds";
+
 /// What dims lights that are so many times too strong, with one digit.
 pub fn dimmed(times: f64) -> f64 {
     let digits = format!("{:.0e}", 1.0 / times);

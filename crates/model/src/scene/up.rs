@@ -1,6 +1,6 @@
 //! The axis of a file that is up, and the turn that makes it +y, which is up in every scene.
 
-use glam::{DMat4, DVec4};
+use glam::{DMat4, DVec3, DVec4};
 
 use super::{
     bounds::Bounds,
@@ -65,14 +65,17 @@ impl UpAxis {
     }
 
     /// The axis that is up in a file of meshes, which says nothing of it. `bounds` is its box,
-    /// `names` are those of the file and its parts, and `usual` is the axis of the format.
+    /// `names` are those of the file and its parts, `foot` is [`Scene::foot_axis`], and `usual` is the
+    /// axis of the format.
     ///
     /// The first of these that holds decides: a name says `y-up` or `z-up`; the box lies far away along
     /// two axes and not along the third, as coordinates of a map do; the model stands on the plane
-    /// through the origin and rises above it by at least [`RISES`] of its size. Else it is `usual`.
+    /// through the origin and rises above it by at least [`RISES`] of its size; it has a foot. Else it
+    /// is `usual`.
     pub fn guessed<'a>(
         bounds: &Bounds,
         names: impl IntoIterator<Item = &'a str>,
+        foot: impl FnOnce() -> Option<Self>,
         usual: Self,
     ) -> Self {
         for name in names {
@@ -101,11 +104,11 @@ impl UpAxis {
             _ => {}
         }
         let stands =
-            |axis: usize| bounds.min[axis].abs() <= 1e-3 * size && extent[axis] >= RISES * size;
+            |axis: usize| bounds.min[axis].abs() <= FLAT * size && extent[axis] >= RISES * size;
         match (stands(1), stands(2)) {
             (true, false) => Self::Y,
             (false, true) => Self::Z,
-            _ => usual,
+            _ => foot().unwrap_or(usual),
         }
     }
 }
@@ -116,7 +119,56 @@ const FAR_M: f64 = 1e3;
 /// The least height of what stands, of its largest extent.
 const RISES: f64 = 0.25;
 
+/// How far from a plane lies what is in it, of the largest extent.
+const FLAT: f64 = 1e-3;
+
+/// What lies in a plane is a foot from the first of these on and none below the second, of the area
+/// of the box.
+const FOOT: [f64; 2] = [0.25, 0.05];
+
 impl Scene {
+    /// The one of +y and +z along which the model has a foot: its vertices in the plane at the lower
+    /// end span much of the box, and at least twice as much as those at the upper end, as of a pyramid,
+    /// a chair, or a statue on its base. None if it has no foot, or something like it along both.
+    pub fn foot_axis(&self) -> Option<UpAxis> {
+        let bounds = self.bounds();
+        let extent = bounds.max - bounds.min;
+        let flat = FLAT * extent.max_element();
+        let mut ends = [[Bounds::EMPTY; 2]; 2];
+        for instance in &self.instances {
+            let primitive = &self.primitives[instance.primitive];
+            for vertex in 0..primitive.positions.count {
+                let position = DVec3::from(primitive.position(self, vertex).map(f64::from));
+                let place = instance.world_from_object.transform_point3(position);
+                for (axis, ends) in ends.iter_mut().enumerate() {
+                    for (end, plane) in ends.iter_mut().zip([bounds.min, bounds.max]) {
+                        if (place[axis + 1] - plane[axis + 1]).abs() <= flat {
+                            end.include(place);
+                        }
+                    }
+                }
+            }
+        }
+        let spans = |axis: usize, end: usize| {
+            let found = &ends[axis][end];
+            // Along x, and along the other one of y and z.
+            [0, 2 - axis].map(|side| (found.max - found.min)[side].max(0.0) / extent[side])
+        };
+        let area = |axis, end| spans(axis, end).iter().product::<f64>();
+        let is_foot = |axis: usize| {
+            let foot = area(axis, 0);
+            extent[axis + 1] >= RISES * extent.max_element()
+                && foot >= FOOT[0]
+                && 2.0 * area(axis, 1) <= foot
+                && area(1 - axis, 0) < FOOT[1]
+        };
+        match [is_foot(0), is_foot(1)] {
+            [true, _] => Some(UpAxis::Y),
+            [_, true] => Some(UpAxis::Z),
+            _ => None,
+        }
+    }
+
     /// The scene, as its file has it, with this axis of the file up: what it shows, its cameras and
     /// its lights.
     #[must_use]
@@ -152,8 +204,6 @@ impl Scene {
 
 #[cfg(test)]
 mod tests {
-    use glam::DVec3;
-
     use super::*;
     use crate::scene::{
         builtin,
@@ -242,7 +292,8 @@ mod tests {
                 min: DVec3::new(number(0), number(1), number(2)),
                 max: DVec3::new(number(3), number(4), number(5)),
             };
-            let guessed = UpAxis::guessed(&bounds, [&*words[8..].join(" ")], axis(words[6]));
+            let name = words[8..].join(" ");
+            let guessed = UpAxis::guessed(&bounds, [&*name], || None, axis(words[6]));
             assert_eq!(guessed, axis(words[7]), "{row}");
         }
     }

@@ -206,13 +206,12 @@ impl PathDialog {
             } else {
                 self.text.as_str()
             };
-            rows.extend(
-                listing
-                    .matches(typed, &system_dialog::extensions(self.purpose))
-                    .into_iter()
-                    .cloned()
-                    .map(Row::Entry),
-            );
+            let extensions = system_dialog::extensions(self.purpose);
+            let mut matches = listing.matches(typed, &extensions);
+            if matches.is_empty() && self.purpose == Purpose::Open {
+                matches = listing.near(typed, &extensions);
+            }
+            rows.extend(matches.into_iter().cloned().map(Row::Entry));
         }
         rows
     }

@@ -36,6 +36,7 @@ use crate::{
         },
     },
     effects::Effect,
+    params::did_you_mean,
     preset::{AccuracyRequest, Preset},
     preset_file::{Folders, open},
     scene::Scene,
@@ -155,7 +156,8 @@ impl EffectBrowser {
             .id_salt("effects")
             .auto_shrink(false)
             .show(ui, |ui| {
-                self.groups_ui(ui, state, commands, &groups);
+                let search = self.search.clone();
+                self.groups_ui(ui, state, commands, (&groups, &search));
                 if groups.is_empty() && ui.small_button("Show all effects").clicked() {
                     (self.search, self.only_favorites) = (String::new(), false);
                 }
@@ -188,7 +190,7 @@ impl EffectBrowser {
                 .max_height(DIALOG[1].min(area.height() - 200.0).max(80.0))
                 .show(ui, |ui| {
                     ui.spacing_mut().item_spacing.y = 2.0;
-                    self.groups_ui(ui, state, commands, &groups)
+                    self.groups_ui(ui, state, commands, (&groups, &search))
                 });
             let is_best = is_entered && !search.trim().is_empty();
             best(&groups, &search).filter(|_| is_best)
@@ -212,7 +214,7 @@ impl EffectBrowser {
         ui: &mut Ui,
         state: &State,
         commands: &Commands,
-        groups: &[(Group, Vec<&Arc<Effect>>)],
+        (groups, search): (&[(Group, Vec<&Arc<Effect>>)], &str),
     ) {
         self.follow_scene(state);
         self.pictures.begin_frame();
@@ -220,7 +222,9 @@ impl EffectBrowser {
             self.group_ui(ui, state, commands, *group, effects);
         }
         if groups.is_empty() {
-            ui.label(theme::weak("No effect answers."));
+            let all = all_effects(state);
+            let near = did_you_mean(search, all.iter().map(|effect| effect.name.as_str()));
+            ui.label(theme::weak(format!("No effect answers{near}")));
         }
         ui.add_space(theme::GAP);
         let own = ui

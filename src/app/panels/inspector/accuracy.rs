@@ -171,7 +171,7 @@ fn line_ui(ui: &mut Ui, name: &str, text: String, color: Color32) -> egui::Respo
     ui.horizontal(|ui| {
         ui.add_space(theme::GAP);
         ui.add_sized([64.0, 16.0], egui::Label::new(theme::weak(name).size(11.5)));
-        ui.add(egui::Label::new(RichText::new(text).size(11.5).color(color)).truncate())
+        ui.add(egui::Label::new(RichText::new(text).size(11.5).color(color)).wrap())
     })
     .inner
 }
@@ -209,7 +209,7 @@ fn error_text(numbers: &TierNumbers, pixels: f64) -> String {
     let ppm = numbers.bound.wrong_ppm.min(1e6);
     let wrong = match (ppm * pixels * 1e-6).floor() as u64 {
         0 => "no wrong pixel expected".into(),
-        most => format!("at most {} ({} ppm)", counts_text(most, None), short(ppm)),
+        most => format!("at most {}", counts_text(most, None)),
     };
     format!(
         "{wrong}{}",

@@ -39,6 +39,7 @@ use crate::{
             tile::{Tile, Tiling},
         },
     },
+    params::did_you_mean,
     preset_file::{self, Folders, GalleryEntry, Origin, PresetFile},
 };
 
@@ -191,7 +192,13 @@ impl PresetBrowser {
             &chips,
         );
         self.listed = arrange(&self.items, &self.filter);
-        count_ui(ui, &mut self.filter, self.listed.len(), self.entries.len());
+        let counts = [self.listed.len(), self.entries.len()];
+        let titles = self.entries.iter().map(GalleryEntry::title);
+        let near = match self.listed.is_empty() {
+            true => did_you_mean(&self.filter.search, titles),
+            false => String::new(),
+        };
+        count_ui(ui, &mut self.filter, counts, &near);
         let has_undo = !state.files.deleted.is_empty();
         let footer = if has_undo {
             theme::ROW + theme::GAP
@@ -326,8 +333,8 @@ fn about_ui(ui: &mut Ui, entry: &GalleryEntry, item: &Item, about: &str) {
     ui.label(theme::weak(source));
 }
 
-/// Says how many presets are listed while not all are.
-fn count_ui(ui: &mut Ui, filter: &mut Filter, listed: usize, all: usize) {
+/// Says how many presets are listed while not all are, and which is `near` where none is.
+fn count_ui(ui: &mut Ui, filter: &mut Filter, [listed, all]: [usize; 2], near: &str) {
     if all == 0 {
         let save = match Action::Save.shortcut_text() {
             keys if keys.is_empty() => "with File › Save".to_owned(),
@@ -337,9 +344,9 @@ fn count_ui(ui: &mut Ui, filter: &mut Filter, listed: usize, all: usize) {
             "No presets found. Build one on the right and save it {save}."
         )));
     } else if !filter.is_empty() {
-        ui.horizontal(|ui| {
+        ui.horizontal_wrapped(|ui| {
             ui.label(theme::weak(if listed == 0 {
-                "No preset answers.".into()
+                format!("No preset answers{near}")
             } else {
                 format!("{listed} of {all}")
             }));

@@ -19,7 +19,10 @@ use crate::{
     },
     preset::SceneSource,
     preset_file::ModelFormat,
-    scene::builtin::{BUILTINS, Builtin},
+    scene::{
+        Primitive,
+        builtin::{BUILTINS, Builtin},
+    },
 };
 
 pub fn scenes_ui(ui: &mut Ui, state: &State, commands: &Commands) {
@@ -78,16 +81,21 @@ fn shown_ui(ui: &mut Ui, session: &Session) {
         return;
     }
     let Some(scene) = session.scene() else { return };
+    // Ground and room of the preset are not the scene's.
+    let own = &scene.instances[..scene.instances.len() - scene.walls - scene.grounds];
+    let primitives = || {
+        own.iter()
+            .map(|instance| &scene.primitives[instance.primitive])
+    };
+    let sum = |counts: &mut dyn Iterator<Item = u32>| group_digits(counts.map(u64::from).sum());
     ui.label(theme::weak(format!(
         "{} triangles · {} vertices",
-        group_digits(scene.triangle_count()),
-        group_digits(scene.vertex_count())
+        sum(&mut primitives().map(Primitive::triangle_count)),
+        sum(&mut primitives().map(Primitive::vertex_count))
     )));
-    if scene.instances.len() > 1 {
-        ui.label(theme::weak(format!(
-            "{} instances",
-            group_digits(scene.instances.len() as u64)
-        )));
+    if own.len() > 1 {
+        let count = group_digits(own.len() as u64);
+        ui.label(theme::weak(format!("{count} instances")));
     }
     if scene.triangle_count() == 0 {
         theme::notice(
@@ -96,9 +104,9 @@ fn shown_ui(ui: &mut Ui, session: &Session) {
             "This scene has no triangles, so the picture is only background.",
         );
     }
-    scene
-        .notes
-        .iter()
+    session
+        .preset()
+        .notes_on(scene)
         .for_each(|note| theme::notice(ui, theme::amber(), note));
 }
 

@@ -365,7 +365,6 @@ impl TradePanel {
         });
         ui.vertical(|ui| {
             let [width, height] = request.size;
-            let pixels = f64::from(width) * f64::from(height);
             let is_stale =
                 picture_of(&request.preset) != picture_of(&state.session.visible_preset());
             let software = if state.picture.screen.gpu.summary.software {
@@ -387,7 +386,7 @@ impl TradePanel {
                 (theme::text_weak(), of)
             };
             ui.add(egui::Label::new(RichText::new(text).size(11.0).color(color)).truncate());
-            clicked = table::table_ui(ui, points, axes, metric, pixels, &is_current).or(clicked);
+            clicked = table::table_ui(ui, points, axes, metric, &is_current).or(clicked);
         });
         clicked
     }

@@ -16,7 +16,6 @@ pub fn table_ui(
     points: &[Point],
     axes: &[&'static Axis],
     metric: Metric,
-    pixels: f64,
     current: &dyn Fn(&Point) -> bool,
 ) -> Option<usize> {
     let mut clicked = None;
@@ -29,7 +28,7 @@ pub fn table_ui(
         .auto_shrink(false)
         .show(ui, |ui| {
             egui::Grid::new("trade table")
-                .num_columns(6 + metrics.len())
+                .num_columns(5 + metrics.len())
                 .spacing([14.0, 3.0])
                 .show(ui, |ui| {
                     let options = if let [one] = axes {
@@ -37,8 +36,8 @@ pub fn table_ui(
                     } else {
                         "options".to_owned()
                     };
-                    let errors = ["ppm", "color", "holes+doubles", "light ppm"];
-                    for heading in [options.as_str(), "", "ms", "5 %", "95 %", "by rounding px"]
+                    let errors = ["by rounding px", "color", "holes+doubles", "light ppm"];
+                    for heading in [options.as_str(), "", "ms", "5 %", "95 %"]
                         .into_iter()
                         .chain(metrics.iter().map(|metric| errors[*metric as usize]))
                     {
@@ -51,7 +50,6 @@ pub fn table_ui(
                             &points[i],
                             axes,
                             &metrics,
-                            pixels,
                             (standings[i], current(&points[i])),
                         ) {
                             clicked = Some(i);
@@ -68,7 +66,6 @@ fn row_ui(
     point: &Point,
     axes: &[&'static Axis],
     metrics: &[Metric],
-    pixels: f64,
     (standing, is_current): (Option<Standing>, bool),
 ) -> bool {
     let is_front = standing == Some(Standing::Front);
@@ -119,9 +116,6 @@ fn row_ui(
     [0, 1, 2]
         .into_iter()
         .for_each(|i| cell(ui, point.ms.map(|ms| [ms.p50, ms.p5, ms.p95][i])));
-    // Pixels of the size that is shown, also for a combination that was drawn at another size.
-    let rounded = point.error(Metric::Wrong);
-    cell(ui, rounded.map(|ppm| (ppm * pixels * 1e-6).round()));
     metrics
         .iter()
         .for_each(|metric| cell(ui, point.error(*metric)));

@@ -149,6 +149,10 @@ fn plate_b_ui(ui: &mut Ui, compare: &mut Compare, state: &State) {
     );
 }
 
+/// Width below which a plate has the time in place of the name, which stands in the picture, too,
+/// points.
+const NARROW: f32 = 200.0;
+
 /// Title and buttons of a side, and below them its time and its error.
 fn plate(
     ui: &mut Ui,
@@ -157,6 +161,11 @@ fn plate(
     ((time, time_hint), (error, color, hint)): ((&str, &str), (&str, Color32, &str)),
     buttons: impl FnOnce(&mut Ui),
 ) {
+    let is_narrow = ui.available_width() < NARROW;
+    let title = match title.split_once(" · ") {
+        Some((side, _)) if is_narrow => format!("{side} · {time}"),
+        _ => title.to_owned(),
+    };
     theme::toast_frame(theme::line())
         .inner_margin(egui::Margin::symmetric(10, 6))
         .show(ui, |ui| {
@@ -173,9 +182,11 @@ fn plate(
             });
             ui.horizontal(|ui| {
                 ui.spacing_mut().item_spacing.x = 6.0;
-                ui.label(RichText::new(time).size(12.0).color(theme::text()))
-                    .on_hover_text(time_hint);
-                ui.label(theme::weak("·"));
+                if !is_narrow {
+                    ui.label(RichText::new(time).size(12.0).color(theme::text()))
+                        .on_hover_text(time_hint);
+                    ui.label(theme::weak("·"));
+                }
                 ui.add(egui::Label::new(RichText::new(error).size(12.0).color(color)).truncate())
                     .on_hover_text(hint);
             });

@@ -142,13 +142,14 @@ impl Viewport {
             return;
         };
         let file = &state.session.preset_file;
-        if self
-            .measured
-            .resets((FileId::of(file), SceneKey::of(file)), interaction.size)
-        {
+        let shown = (FileId::of(file), SceneKey::of(file));
+        let [resets_times, is_other] = self.measured.resets(shown, interaction.size);
+        if resets_times {
             state.picture.screen.reset_timings();
-            state.picture.verification.reset();
             self.compare.reset_measurements();
+        }
+        if is_other {
+            state.picture.verification.reset();
         }
         let session = &state.session;
         let stack = session

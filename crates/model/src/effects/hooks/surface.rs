@@ -251,7 +251,7 @@ impl SurfaceInput {
 /// The light that comes with a scene.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Lighting<'a> {
-    /// Lamps and suns, where they are.
+    /// The lights of the scene, where they are.
     pub lights: &'a [PlacedLight],
     /// The picture of what surrounds the scene.
     pub panorama: Option<&'a Panorama>,

@@ -1,4 +1,4 @@
-//! Finishes: balls in rows, from metal behind to glaze in front, rougher from left to right. Lamps
+//! Finishes: balls in rows, from metal behind to glaze in front, rougher from left to right. Lights
 //! may hang over them.
 
 use std::f64::consts::PI;
@@ -37,9 +37,9 @@ pub fn build(values: &Values) -> Result<Scene, BuiltinError> {
         0.0,
         PITCH_M[1] * f64::from(rows),
     ) * 0.5;
-    let lamps = (0..values.whole("lamps")).map(|index| lamp(index, half));
+    let lights = (0..values.whole("lamps")).map(|index| light(index, half));
     let mut scene = Scene {
-        lights: lamps.collect(),
+        lights: lights.collect(),
         ..Scene::default()
     };
     for row in 0..rows {
@@ -70,17 +70,17 @@ pub fn build(values: &Values) -> Result<Scene, BuiltinError> {
     Ok(scene)
 }
 
-/// Linear colors of lamps, by turns.
-const LAMP_COLORS: [DVec3; 4] = [
+/// Linear colors of lights, by turns.
+const LIGHT_COLORS: [DVec3; 4] = [
     DVec3::new(1.0, 0.42, 0.1),
     DVec3::new(0.3, 0.62, 1.0),
     DVec3::new(0.55, 0.6, 0.9),
     DVec3::new(1.0, 0.2, 0.42),
 ];
 
-/// Lamps spiral outwards over the rows, which reach this far: by turns a point low between the
+/// Lights spiral outwards over the rows, which reach this far: by turns a point low between the
 /// balls, a spot that shines down, and a light from far away.
-fn lamp(index: u32, half: DVec3) -> SceneLight {
+fn light(index: u32, half: DVec3) -> SceneLight {
     const GOLDEN_ANGLE: f64 = 2.399_963_229_728_653;
     let (sin, cos) = libm::sincos(f64::from(index) * GOLDEN_ANGLE);
     let aside = DVec3::new(sin, 0.0, cos) * half * (0.35 + 0.04 * f64::from(index));
@@ -100,7 +100,7 @@ fn lamp(index: u32, half: DVec3) -> SceneLight {
     SceneLight {
         name: format!("lamp {index}"),
         kind,
-        light: (LAMP_COLORS[index as usize % LAMP_COLORS.len()] * intensity).to_array(),
+        light: (LIGHT_COLORS[index as usize % LIGHT_COLORS.len()] * intensity).to_array(),
         range_m,
         // Of its axes only the third counts.
         world_from_light: DMat4::from_cols(

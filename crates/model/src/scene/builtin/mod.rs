@@ -186,7 +186,7 @@ pub const BUILTINS: &[Builtin] = &[
             whole("rows", "number of rows", 3.0, 1.0..=16.0),
             whole(
                 "lamps",
-                "number of lamps, which shine on the effect studio",
+                "number of lights, which shine on the effect studio",
                 0.0,
                 0.0..=16.0,
             ),

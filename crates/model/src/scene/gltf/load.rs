@@ -16,7 +16,12 @@ use super::{
     source::{Bytes, Source},
 };
 use crate::scene::{
-    camera::MIN_NEAR_M, memory::MemoryBudget, model::Scene, pose, punctual::dimmed, rig::Rig,
+    camera::MIN_NEAR_M,
+    memory::MemoryBudget,
+    model::Scene,
+    pose,
+    punctual::{TOO_STRONG, dimmed},
+    rig::Rig,
 };
 
 /// Loads a model from memory, within the least memory budget. `read` supplies the files that it
@@ -156,7 +161,7 @@ fn read_model(
             // One digit: 20, 50000.
             let times: f64 = format!("{times:.0e}").parse().unwrap_or(times);
             format!(
-                "its lights are about {times} times as strong as what a picture holds; studio.lights = {dimmed} dims them, as in the plain look"
+                "its lights are about {times} {TOO_STRONG}; studio.lights = {dimmed} dims them, as in the plain look"
             )
         });
     }
