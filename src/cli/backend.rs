@@ -292,7 +292,7 @@ pub fn tell(preset: &Preset, scene: &Scene, streams: &Streams) {
     scene.notes.iter().for_each(|note| streams.note(note));
     for enabled in &preset.stack.0 {
         if let Some(why) = enabled.effect.why_idle(scene) {
-            streams.note(&format!("{}: {why}", enabled.effect.name));
+            streams.note(&format!("info: {}: {why}", enabled.effect.name));
         }
     }
     if let Some(camera) = preset.cropping_camera(scene) {

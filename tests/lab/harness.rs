@@ -120,6 +120,15 @@ fn device(adapter: &AdapterChoice) -> RenderState {
 }
 
 impl Lab {
+    /// Hands the device what was written to it, as each frame of a window on a screen does.
+    pub fn submit(&self) {
+        self.window.queue.submit([]);
+        self.window
+            .device
+            .poll(wgpu::PollType::Poll)
+            .expect("the device is there");
+    }
+
     /// What the window shows.
     pub fn screenshot(&mut self) -> image::RgbaImage {
         let RenderState {

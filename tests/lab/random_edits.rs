@@ -280,6 +280,7 @@ fn child_that_edits() {
         let deed = act(&mut lab, &mut random);
         writeln!(&log, "{deed}").expect("a line");
         lab.step();
+        lab.submit();
         slowest.push((thread_time().saturating_sub(before), deed));
         slowest.sort_by(|a, b| b.cmp(a));
         slowest.truncate(8);
