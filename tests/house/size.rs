@@ -20,7 +20,8 @@ const RUST: &[(&str, u64)] = &[
     // Effects that a folder of shaders has more (1), paid by crates/model.
     // The text of a preset is pasted as it is (1), paid by studio's Rust.
     // The text of a preset is pasted as it is (1), paid by studio's Rust.
-    ("crates/files", 393_000),
+    // Formats whose points have several colors (0.7).
+    ("crates/files", 394_000),
     ("crates/gpu", 421_500),
     // The variant of points (0.2).
     ("crates/kernels", 239_000),
@@ -34,13 +35,14 @@ const RUST: &[(&str, u64)] = &[
     // Blocks without a brace, and the formulas of facets in numbers (2).
     // Studio and what surrounds it have no Rust any more, and Shadow none for its colors (-25); bounds of
     // vertices whose inputs err at once (3).
-    // Points: clouds, their readers and the scene survey (30).
-    ("crates/model", 1_477_000),
+    // Points: clouds, their readers and the scene survey (30). LAZ (11), colors of clouds (5), lines, and points
+    // of OBJ (8), the plain look of clouds (3).
+    ("crates/model", 1_505_500),
     ("crates/one_thread", 4_100),
     // Pixels, vertices and samples of a row handed on together (6).
     // Image passes over the ends of what they read (5), for a share of the picture that was let off.
-    // Layers of an x-ray by rows (1), paid by crates/model. The twin of points (8).
-    ("crates/oracle", 480_500),
+    // Layers of an x-ray by rows (1), paid by crates/model. The twin of points (8), that of lines (3).
+    ("crates/oracle", 483_500),
     // What a model has lost and how many pixels a preset allows to differ are told (1); the canvas of the
     // adapter's own rasterizer went for it.
     ("crates/page", 21_900),
@@ -63,7 +65,8 @@ const RUST: &[(&str, u64)] = &[
     ("fuzz", 289_500),
     ("tests/common", 18_000),
     // Random programs with conversions on the adapter and in the evaluator (4); extremes of passes (3).
-    ("tests/exact", 307_500),
+    // Points and lines beside a face, with effects and picking (3).
+    ("tests/exact", 309_500),
     // What files hold is tried in tables: 59 KB of transcripts and tables stand in files beside the tests.
     // First looks at models (8).
     // Rates, tags of color and the help of commands (2).
@@ -71,8 +74,8 @@ const RUST: &[(&str, u64)] = &[
     // The formulas of studio are asked of its text (13), which crates/model did (10). An effect that is
     // added, films with the clock, the guide, Kuwahara, reaches and bounds of vertices (16); twins of
     // effects without Rust went (5).
-    // Clouds of text and of surveys (4). Effects at every edge (7), paid by studio's Rust.
-    ("tests/house", 688_500),
+    // Clouds of text and of surveys (4), compressed ones, their colors, lines of glTF (4). Effects at every edge (7), paid by studio's Rust.
+    ("tests/house", 694_500),
     // Another program on the display, with which the clipboard is shared (5).
     // An effect more in the window's list (0.3), paid by crates/model.
     ("tests/lab", 365_000),
@@ -81,8 +84,8 @@ const RUST: &[(&str, u64)] = &[
 ];
 
 /// Files and bytes of WGSL in `shaders`: with what effects declare of their parameters, which Rust
-/// did, the reach of two (0.5), meters between two depths (1), what explains studio (1), and points (6).
-const SHADERS: (usize, u64) = (178, 481_500);
+/// did, the reach of two (0.5), meters between two depths (1), what explains studio (1), points (6) and lines (2).
+const SHADERS: (usize, u64) = (178, 484_000);
 
 /// Packages in `Cargo.lock`, of all platforms. The clipboard of the system costs none: the feature `arboard` of egui-winit
 /// alone stands there already, and compiles arboard and wl-clipboard-rs with it. `clipboard` has smithay-clipboard too, with

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use glam::{DMat4, DVec3};
 use rasterlab::{
+    effects::Effect,
     preset::{NO_CAMERA, Preset},
     preset_file::{self, Folders, PresetFile, load_scene},
     scene::{Scene, UpAxis, pick, view::View},
@@ -138,6 +139,39 @@ fn presets_and_gltf_files_are_not_turned_unless_they_say_so() {
     model.json["nodes"][0]["translation"] = json!([-0.5, 4.0, 0.0]);
     let path = written(folder.path(), "a z-up square.glb", model.glb());
     assert_eq!(opened(&path).0.preset.parts.up, UpAxis::Y);
+}
+
+#[test]
+fn a_cloud_keeps_its_colors_in_the_plain_look_and_effects_of_faces_say_why_they_are_idle() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let text = |columns: &str| format!("0 0 0 {columns}\n1 0 0 {columns}\n0 1 1 {columns}\n");
+    for columns in ["200 90 9", ""] {
+        let (file, scene) = opened(&written(folder.path(), "cloud.xyz", text(columns)));
+        let stack = &file.preset.stack;
+        assert_eq!(
+            stack.get("studio").expect("studio").on.texts(),
+            ["material:ground"]
+        );
+        assert!(stack.get("ambient").is_some());
+        let idle = |name| Effect::named(name).why_idle(&scene).is_some();
+        let named = [
+            "wireframe",
+            "facet",
+            "dots",
+            "inflate",
+            "explode",
+            "dissolve",
+        ];
+        assert_eq!(named.map(idle), [true, true, true, true, false, false]);
+    }
+    let ply = "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\n\
+               property float nx\nproperty float ny\nproperty float nz\nend_header\n0 0 0 0 0 1\n1 1 1 0 0 1\n";
+    let (file, scene) = opened(&written(folder.path(), "normals.ply", ply));
+    let studio = file.preset.stack.get("studio").expect("studio");
+    assert!(studio.on.is_whole_scene() && Effect::named("inflate").why_idle(&scene).is_none());
+    let (file, scene) = opened(&written(folder.path(), "tower.obj", tower()));
+    assert!(file.preset.stack.get("ambient").is_none());
+    assert!(Effect::named("wireframe").why_idle(&scene).is_none());
 }
 
 #[test]

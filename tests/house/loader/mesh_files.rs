@@ -502,7 +502,7 @@ fn a_damaged_las_opens_as_far_as_it_goes_or_is_refused_in_words() {
             let _ = load(load_las, &whole[..length], &[]);
         }
         for at in 24..whole.len() {
-            for value in [0, 0x7f, 0xff] {
+            for value in [0x7f, 0xff] {
                 let _ = load(load_las, &with(whole, at, value), &[]);
             }
         }

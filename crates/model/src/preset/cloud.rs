@@ -28,10 +28,12 @@ impl Preset {
         let Some(drawn) = drawn else { return };
         let mut each = drawn.iter();
         let is_lit = each.all(|p| p.colors.is_none() && p.normals.stride > 0);
-        let ground = Scope::of_texts(&["node:ground".to_owned()]).unwrap_or_default();
-        for name in ["studio", "shadow"] {
-            if let Some(light) = self.stack.get_mut(name).filter(|_| !is_lit) {
-                light.on = ground.clone();
+        // Surveys have a class of the name, which is a node.
+        let ground = Scope::of_texts(&["material:ground".to_owned()]).unwrap_or_default();
+        let colors = ["studio", "tonemap", "shadow"].into_iter();
+        for name in colors.filter(|_| !is_lit).chain(["fog"]) {
+            if let Some(effect) = self.stack.get_mut(name) {
+                effect.on = ground.clone();
             }
         }
         if drawn.iter().any(|primitive| primitive.is_points()) {

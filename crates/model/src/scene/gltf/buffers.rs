@@ -412,7 +412,7 @@ pub const QUANTIZED_NORMALS: &[Format] = &[
 /// A scene under construction that receives bytes of the file, each buffer view and each sparse
 /// accessor once.
 pub struct SceneWriter<'a> {
-    buffers: &'a Buffers<'a>,
+    pub(super) buffers: &'a Buffers<'a>,
     /// What has been read so far.
     pub scene: Scene,
     /// The file declares KHR_mesh_quantization: attributes may be small integers.
@@ -516,38 +516,6 @@ impl<'a> SceneWriter<'a> {
         )
     }
 
-    /// Appends the index list of the segments of a line through these corners, or through so many
-    /// vertices in order.
-    pub fn joined(
-        &mut self,
-        corners: Option<Accessor>,
-        vertices: u32,
-        chain: document::Chain,
-    ) -> Result<Accessor, LoadError> {
-        let count = corners.map_or(vertices, |corners| corners.count);
-        let segments = match chain {
-            document::Chain::Open => count.saturating_sub(1),
-            document::Chain::Closed => count,
-        };
-        let bytes = &mut self.scene.index_bytes;
-        let offset = make_room(&self.buffers.limits, bytes, 8 * segments as usize)?;
-        for corner in (0..segments).flat_map(|at| [at, (at + 1) % count]) {
-            let index = match corners {
-                Some(corners) => corners.integer(bytes, corner, 0) as u32,
-                None => corner,
-            };
-            bytes.extend_from_slice(&index.to_le_bytes());
-        }
-        Ok(Accessor {
-            offset,
-            stride: 4,
-            component_type: ComponentType::U32,
-            components: 1,
-            normalized: false,
-            count: 2 * segments,
-        })
-    }
-
     /// Appends an attribute that the file does not have.
     pub fn append_vectors(
         &mut self,
@@ -639,7 +607,11 @@ fn copy(
 }
 
 /// Makes room for so many bytes, padded to a multiple of 4; returns the offset.
-fn make_room(limits: &Limits, bytes: &mut Vec<u8>, more: usize) -> Result<u32, LoadError> {
+pub(super) fn make_room(
+    limits: &Limits,
+    bytes: &mut Vec<u8>,
+    more: usize,
+) -> Result<u32, LoadError> {
     let total = bytes.len() as u64 + more.next_multiple_of(4) as u64;
     if total > limits.buffer_bytes {
         return Err(limits.exceeded(

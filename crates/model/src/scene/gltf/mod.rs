@@ -24,6 +24,7 @@ pub(super) mod images;
 mod instances;
 mod instancing;
 pub mod limits;
+mod lines;
 pub(super) mod load;
 mod mask;
 mod materials;
