@@ -157,7 +157,7 @@ impl EffectBrowser {
             .auto_shrink(false)
             .show(ui, |ui| {
                 let search = self.search.clone();
-                self.groups_ui(ui, state, commands, (&groups, &search));
+                self.groups_ui(ui, state, commands, &groups, &search);
                 if groups.is_empty() && ui.small_button("Show all effects").clicked() {
                     (self.search, self.only_favorites) = (String::new(), false);
                 }
@@ -190,7 +190,7 @@ impl EffectBrowser {
                 .max_height(DIALOG[1].min(area.height() - 200.0).max(80.0))
                 .show(ui, |ui| {
                     ui.spacing_mut().item_spacing.y = 2.0;
-                    self.groups_ui(ui, state, commands, (&groups, &search))
+                    self.groups_ui(ui, state, commands, &groups, &search)
                 });
             let is_best = is_entered && !search.trim().is_empty();
             best(&groups, &search).filter(|_| is_best)
@@ -214,7 +214,8 @@ impl EffectBrowser {
         ui: &mut Ui,
         state: &State,
         commands: &Commands,
-        (groups, search): (&[(Group, Vec<&Arc<Effect>>)], &str),
+        groups: &[(Group, Vec<&Arc<Effect>>)],
+        search: &str,
     ) {
         self.follow_scene(state);
         self.pictures.begin_frame();
