@@ -42,6 +42,9 @@ use crate::{
     scene::Scene,
 };
 
+/// A group with those of its effects that are shown.
+type ShownGroup<'a> = (Group, Vec<&'a Arc<Effect>>);
+
 /// The browser of effects.
 #[derive(Default)]
 pub struct EffectBrowser {
@@ -214,7 +217,7 @@ impl EffectBrowser {
         ui: &mut Ui,
         state: &State,
         commands: &Commands,
-        (groups, search): (&[(Group, Vec<&Arc<Effect>>)], &str),
+        (groups, search): (&[ShownGroup<'_>], &str),
     ) {
         self.follow_scene(state);
         self.pictures.begin_frame();
