@@ -1,6 +1,6 @@
-//! Points and lines. A point is drawn as a triangle about it, of which its disc is shown, or where that is too small
-//! to hold a sample wherever it lies, the pixel in which the point lies (`docs/exactness.md` §2). A segment of a
-//! line is drawn as two triangles, whose sides lie half a pixel from it.
+//! Points and lines (`docs/exactness.md` §2). A point is drawn as a triangle about it, of which its disc
+//! is shown, or where that is too small to hold a sample wherever it lies, the pixel in which the point
+//! lies. A segment of a line is drawn as two triangles, whose sides lie half a pixel from it.
 
 use crate::{
     frame::{SnappedVertex, vertex_flags},
@@ -122,7 +122,7 @@ mod tests {
             }
         }
         // Of a side of the triangle, the point is farther away than the disc is wide.
-        for inner in [183i64, 500, 8193, 131_073] {
+        for inner in [183i128, 500, 8193, 131_073] {
             let half = inner * 1774 / 1024 + 1;
             let doubled_area = 2 * half * inner;
             let squared_side = half * half + 9 * inner * inner;

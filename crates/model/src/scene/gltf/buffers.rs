@@ -412,7 +412,7 @@ pub const QUANTIZED_NORMALS: &[Format] = &[
 /// A scene under construction that receives bytes of the file, each buffer view and each sparse
 /// accessor once.
 pub struct SceneWriter<'a> {
-    pub(super) buffers: &'a Buffers<'a>,
+    pub buffers: &'a Buffers<'a>,
     /// What has been read so far.
     pub scene: Scene,
     /// The file declares KHR_mesh_quantization: attributes may be small integers.
@@ -607,11 +607,7 @@ fn copy(
 }
 
 /// Makes room for so many bytes, padded to a multiple of 4; returns the offset.
-pub(super) fn make_room(
-    limits: &Limits,
-    bytes: &mut Vec<u8>,
-    more: usize,
-) -> Result<u32, LoadError> {
+pub fn make_room(limits: &Limits, bytes: &mut Vec<u8>, more: usize) -> Result<u32, LoadError> {
     let total = bytes.len() as u64 + more.next_multiple_of(4) as u64;
     if total > limits.buffer_bytes {
         return Err(limits.exceeded(
