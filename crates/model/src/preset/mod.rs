@@ -362,7 +362,7 @@ impl Preset {
     }
 
     /// The direction in which the automatic camera looks at these points: at a model that is flatter
-    /// than [`FLAT`] the steeper the flatter it is, so that the picture is filled down, too.
+    /// than 0.3 of its width the steeper the flatter it is, so that the picture is filled down, too.
     pub fn looks_along(&self, points: &[DVec3]) -> DVec3 {
         let mut bounds = Bounds::EMPTY;
         points.iter().for_each(|point| bounds.include(*point));

@@ -70,7 +70,7 @@ impl UpAxis {
     ///
     /// The first of these that holds decides: a name says `y-up` or `z-up`; the box lies far away along
     /// two axes and not along the third, as coordinates of a map do; the model stands on the plane
-    /// through the origin and rises above it by at least [`RISES`] of its size; it has a foot. Else it
+    /// through the origin and rises above it by at least a quarter of its size; it has a foot. Else it
     /// is `usual`.
     pub fn guessed<'a>(
         bounds: &Bounds,
