@@ -2,9 +2,20 @@
 //! and a job that waits lets the next frame be drawn.
 
 #[cfg(not(target_arch = "wasm32"))]
-pub use native::{named, pause, start};
+pub use native::{pause, start};
 #[cfg(target_arch = "wasm32")]
 pub use page::{pause, start, wait};
+
+/// Stack of a thread: a picture of many effects takes more than the 8 MiB of the main thread
+/// where nothing is optimized. What is not used takes no memory.
+const STACK_BYTES: usize = 16 << 20;
+
+/// A thread of this name that draws.
+pub fn named(name: &str) -> std::thread::Builder {
+    std::thread::Builder::new()
+        .name(name.into())
+        .stack_size(STACK_BYTES)
+}
 
 #[cfg(not(target_arch = "wasm32"))]
 mod native {
@@ -16,17 +27,6 @@ mod native {
 
     use pollster::FutureExt as _;
 
-    /// Stack of a thread: a picture of many effects takes more than the 8 MiB of the main thread
-    /// where nothing is optimized. What is not used takes no memory.
-    const STACK_BYTES: usize = 16 << 20;
-
-    /// A thread of this name that draws.
-    pub fn named(name: &str) -> thread::Builder {
-        thread::Builder::new()
-            .name(name.into())
-            .stack_size(STACK_BYTES)
-    }
-
     /// Starts work on a thread of this name. What is returned waits for its end; there is nothing to
     /// wait for in a page.
     ///
@@ -36,7 +36,9 @@ mod native {
         name: &str,
         work: impl FnOnce() -> F + Send + 'static,
     ) -> io::Result<Option<JoinHandle<()>>> {
-        named(name).spawn(move || work().block_on()).map(Some)
+        super::named(name)
+            .spawn(move || work().block_on())
+            .map(Some)
     }
 
     /// Waits so long.
