@@ -2,20 +2,9 @@
 //! and a job that waits lets the next frame be drawn.
 
 #[cfg(not(target_arch = "wasm32"))]
-pub use native::{pause, start};
+pub use native::{named, pause, start};
 #[cfg(target_arch = "wasm32")]
-pub use page::{pause, start, wait};
-
-/// Stack of a thread: a picture of many effects takes more than the 8 MiB of the main thread
-/// where nothing is optimized. What is not used takes no memory.
-const STACK_BYTES: usize = 16 << 20;
-
-/// A thread of this name that draws.
-pub fn named(name: &str) -> std::thread::Builder {
-    std::thread::Builder::new()
-        .name(name.into())
-        .stack_size(STACK_BYTES)
-}
+pub use page::{named, pause, start, wait};
 
 #[cfg(not(target_arch = "wasm32"))]
 mod native {
@@ -27,6 +16,17 @@ mod native {
 
     use pollster::FutureExt as _;
 
+    /// Stack of a thread: a picture of many effects takes more than the 8 MiB of the main thread
+    /// where nothing is optimized. What is not used takes no memory.
+    const STACK_BYTES: usize = 16 << 20;
+
+    /// A thread of this name that draws.
+    pub fn named(name: &str) -> thread::Builder {
+        thread::Builder::new()
+            .name(name.into())
+            .stack_size(STACK_BYTES)
+    }
+
     /// Starts work on a thread of this name. What is returned waits for its end; there is nothing to
     /// wait for in a page.
     ///
@@ -36,9 +36,7 @@ mod native {
         name: &str,
         work: impl FnOnce() -> F + Send + 'static,
     ) -> io::Result<Option<JoinHandle<()>>> {
-        super::named(name)
-            .spawn(move || work().block_on())
-            .map(Some)
+        named(name).spawn(move || work().block_on()).map(Some)
     }
 
     /// Waits so long.
@@ -54,6 +52,11 @@ mod page {
     use js_sys::{Function, Promise, Reflect};
     use wasm_bindgen::{JsCast as _, JsValue};
     use wasm_bindgen_futures::{JsFuture, spawn_local};
+
+    /// A thread of this name, which a page cannot start.
+    pub fn named(name: &str) -> std::thread::Builder {
+        std::thread::Builder::new().name(name.into())
+    }
 
     pub fn start<F: Future<Output = ()> + 'static>(
         _: &str,
