@@ -3,6 +3,7 @@
 #![cfg(target_os = "linux")]
 
 use std::{
+    cell::RefCell,
     fs,
     io::Write as _,
     path::{Path, PathBuf},
@@ -103,6 +104,22 @@ const TEXTS: [&str; 14] = [
     "fn surface(p: Parameters, s: Surface) -> Surface { return s; }",
 ];
 
+thread_local! {
+    /// Where what is open is written after each frame.
+    static STATES: RefCell<Option<fs::File>> = const { RefCell::new(None) };
+}
+
+/// The next frame.
+fn frame(lab: &mut Lab) {
+    lab.step();
+    STATES.with_borrow(|states| {
+        if let Some(states) = states {
+            let mut states: &fs::File = states;
+            writeln!(states, "{}", state_line(lab)).expect("a line");
+        }
+    });
+}
+
 /// Does one thing, and says what.
 fn act(lab: &mut Lab, random: &mut Random) -> String {
     let size = lab.ctx.content_rect().size();
@@ -138,32 +155,34 @@ fn act(lab: &mut Lab, random: &mut Random) -> String {
             let (from, to) = (random.position(size), random.position(size));
             lab.drag_at(from);
             for part in 1..=4 {
-                lab.step();
+                frame(lab);
                 lab.hover_at(from + (to - from) * (part as f32 / 4.0));
             }
-            lab.step();
+            frame(lab);
             lab.drop_at(to);
             format!("drag {from} to {to}")
         }
         Deed::Type => {
             let text = random.of(&TEXTS);
             lab.event(Event::Text(text.into()));
-            lab.step();
+            frame(lab);
             lab.key_press_modifiers(Modifiers::NONE, random.of(&[Key::Enter, Key::Tab]));
             format!("type {text:?}")
         }
         Deed::Search => {
             lab.key_press_modifiers(Modifiers::COMMAND, Key::P);
-            lab.run_steps(2);
+            frame(lab);
+            frame(lab);
             let letters: String = (0..2)
                 .map(|_| char::from(b'a' + random.index(26) as u8))
                 .collect();
             lab.event(Event::Text(letters.clone()));
-            lab.run_steps(2);
+            frame(lab);
+            frame(lab);
             let rank = random.index(9);
             for _ in 0..rank {
                 lab.key_press_modifiers(Modifiers::NONE, Key::ArrowDown);
-                lab.step();
+                frame(lab);
             }
             lab.key_press_modifiers(Modifiers::NONE, Key::Enter);
             format!("the entry {rank} of {letters:?} in the palette")
@@ -194,7 +213,7 @@ fn act(lab: &mut Lab, random: &mut Random) -> String {
             2 => {
                 for _ in 0..random.index(4) {
                     lab.key_press_modifiers(Modifiers::COMMAND, Key::Z);
-                    lab.step();
+                    frame(lab);
                 }
                 "undo".into()
             }
@@ -203,7 +222,7 @@ fn act(lab: &mut Lab, random: &mut Random) -> String {
                     if lab.state().is_idle() {
                         break;
                     }
-                    lab.step();
+                    frame(lab);
                     std::thread::sleep(Duration::from_millis(2));
                 }
                 "wait".into()
@@ -340,18 +359,19 @@ fn state_line(lab: &Lab) -> String {
     format!("{:?}", text)
 }
 
-/// Writes what is open after each step into a file, until it is killed.
+/// Writes what is open after each frame into a file, until it is killed.
 #[test]
 #[ignore = "run by who_kills_the_program_loses_the_last_second"]
 fn child_that_is_killed() {
     let (seed, time, folder) = orders();
     let mut lab = window(&folder, Some("mine")).expect("the parent has an adapter");
     let (mut random, start) = (Random(seed), Instant::now());
-    let journal = fs::File::create(folder.join("states.txt")).expect("a file");
+    STATES.set(Some(
+        fs::File::create(folder.join("states.txt")).expect("a file"),
+    ));
     while start.elapsed() < time {
         act(&mut lab, &mut random);
-        lab.step();
-        writeln!(&journal, "{}", state_line(&lab)).expect("a line");
+        frame(&mut lab);
         // The thread that writes the session gets a processor.
         std::thread::sleep(Duration::from_millis(20));
     }
