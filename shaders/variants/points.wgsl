@@ -1,7 +1,7 @@
-// Points: what triangles are where some primitives are points or lines. A point is a triangle whose corners are one. It is drawn as a triangle about
-// that, whose corners all have its depth. Of that its disc is shown, or where the disc is smaller than the least one, which holds a sample
-// wherever it lies, the pixel in which the point lies. A segment of a line is two triangles with its ends as corners, of which the sides lie half a pixel from it, along the
-// axis to which it is steeper: so it has one sample in each column or each row. Integers decide.
+// Points: what triangles are where some primitives are points or lines. A point is a triangle whose corners are one. It is drawn as a triangle
+// about that, whose corners all have its depth. Of that its disc is shown, or where the disc is smaller than the least one, which holds a
+// sample wherever it lies, the pixel in which the point lies. A segment of a line is two triangles between the points half a pixel beside its
+// ends, across the axis along which it is longer: so it has one sample in each column or each row. Integers decide.
 // Chosen by the scene, and by the effect that draws corners as discs.
 //
 // The triangle that is drawn.

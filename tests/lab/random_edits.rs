@@ -1,5 +1,5 @@
-//! Promise: whatever one does in the window, in whatever order, nothing panics; and who kills the
-//! program loses the last second.
+//! Promise: the window does not panic, whatever a user does in it and in which order; a user whose
+//! program is killed loses the edits of the last second alone.
 #![cfg(target_os = "linux")]
 
 use std::{

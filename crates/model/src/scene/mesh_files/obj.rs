@@ -262,7 +262,7 @@ struct Faces<'a> {
     findings: Findings,
     /// How many positions, texture coordinates and normals came before.
     passed: [usize; 3],
-    /// There is a face, a point or a line, whatever is wrong with it.
+    /// The file has a face, a point or a line, even if it is faulty.
     has_faces: bool,
     /// Of the object and of the group.
     names: [Option<String>; 2],
