@@ -202,6 +202,22 @@ fn one_pixel_that_is_not_finite_stays_one_pixel() {
         2,
         "pixels that differ by more than 4 of 255"
     );
+    // A compiler that assumes numbers may give any there, and nowhere else.
+    for (column, is_right) in [("48", true), ("47", false)] {
+        let text = NOT_FINITE
+            .replace("bitcast<f32>(0x7fc00000u + p.more)", "0.5")
+            .replace("bitcast<f32>(0x7f800000u + p.more)", "1.0")
+            .replace("48", column);
+        let effect = read("bad.wgsl", "bad", &text).unwrap_or_else(|error| panic!("{error}"));
+        let mut assumed = Stack::default();
+        assumed.enable(&effect);
+        assumed.enable(Effect::find("bloom").expect("a built-in effect"));
+        let (capture, _) = judged(&mut renderer, &scene, &view, &assumed, &accuracy);
+        let verdict =
+            rasterlab::oracle::judge(&scene, &view, &bad, &capture.picture()).expect("a verdict");
+        let exact = exactness(&verdict.report);
+        assert_eq!(exact.is_ok(), is_right, "{column}: {:?}", verdict.report);
+    }
 }
 
 #[test]

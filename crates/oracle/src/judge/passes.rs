@@ -77,10 +77,23 @@ impl Ends {
     }
 }
 
+/// What an adapter may give where a channel is NaN or infinite, at most; at least 0, which the
+/// kernel stores. A compiler may assume that neither occurs, so that `z / z` is 1 on NVIDIA cards.
+const NO_NUMBER: f64 = 1.0;
+
 /// How a pass is run: over which values, and how it errs itself.
 const RUNS: [(Signs, PassPerturbation); 8] = {
     const fn at(signs: Signs, step_offset: f64) -> (Signs, PassPerturbation) {
-        (signs, PassPerturbation { step_offset, signs })
+        let no_number = match signs {
+            Signs::Up => NO_NUMBER,
+            _ => 0.0,
+        };
+        let perturbation = PassPerturbation {
+            step_offset,
+            signs,
+            no_number,
+        };
+        (signs, perturbation)
     }
     [
         at(Signs::None, 0.0),

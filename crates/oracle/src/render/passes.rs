@@ -16,11 +16,12 @@ use crate::{
 };
 
 /// How a pass errs: every value that decides a step by `step_offset`, and depths in meters in the
-/// direction of `signs`.
+/// direction of `signs`. Channels that are NaN or infinite become `no_number`.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PassPerturbation {
     pub step_offset: f64,
     pub signs: Signs,
+    pub no_number: f64,
 }
 
 /// What the passes of a stack read: the picture before them, and what the kept one wrote in the
@@ -84,6 +85,7 @@ impl Step<'_> {
             let first = part * TOGETHER;
             let part: Vec<ImageAt<'_>> = (first..pixels.min(first + TOGETHER)).map(at).collect();
             let written = (self.hook.run)(self.index, &part, self.words);
+            let finite = |color| finite(color, perturbation.no_number);
             written.into_iter().map(finite).collect::<Vec<_>>()
         };
         let parts = map_each((0..pixels.div_ceil(TOGETHER)).into_par_iter(), write)?;
@@ -94,13 +96,13 @@ impl Step<'_> {
     }
 }
 
-/// A channel that is NaN or infinite in f32 is 0, so that no pass spreads it.
-fn finite(color: DVec4) -> DVec4 {
+/// A channel that is NaN or infinite in f32 is `no_number`, so that no pass spreads it.
+fn finite(color: DVec4, no_number: f64) -> DVec4 {
     color.map(|channel| {
         if (channel as f32).is_finite() {
             channel
         } else {
-            0.0
+            no_number
         }
     })
 }
