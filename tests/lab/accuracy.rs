@@ -90,7 +90,7 @@ fn tiers_are_measured_at_rest_and_their_times_dropped_when_the_picture_changes()
     if !lab.state().gpu().caps.timestamps {
         return eprintln!("this adapter has no timestamps, so tiers are not measured");
     }
-    let unknown = |lab: &Lab| lab.query_all_by_label_contains("not measured yet").count();
+    let unknown = |lab: &Lab| lab.query_all_by_label_contains("no time yet").count();
     lab.run_steps(60);
     let other = |lab: &Lab| lab.state().tier_ms(Tier::Strict);
     assert_eq!(other(&lab), None, "nobody has looked at the slider");

@@ -65,7 +65,7 @@ pub fn written(app: &mut App, path: PathBuf, origin: Origin, outcome: Result<(),
 
 /// Where a new effect is written: beside the preset, in the folder of effects that is in use, or in
 /// the user's own.
-fn folder(state: &State) -> PathBuf {
+pub fn folder(state: &State) -> PathBuf {
     if let Some(beside) = state.files.live.watcher.targets().preset_effects() {
         return beside;
     }

@@ -1,13 +1,13 @@
 //! The dialog for a new effect: its name and its hook.
 
-use std::sync::Arc;
+use std::{path::PathBuf, sync::Arc};
 
 use egui::Ui;
 
 use crate::{
     app::{
         files::command::Origin,
-        widgets::{form::name_ui, theme},
+        widgets::{form::name_ui, text::with_own_paths, theme},
     },
     effect_files::{Catalog, Hook, check_name},
     effects::Effect,
@@ -18,18 +18,21 @@ pub struct NewEffect {
     pub name: String,
     pub origin: Origin,
     pub error: Option<String>,
+    /// Where its file is written.
+    folder: PathBuf,
     /// The suggested name is selected when the dialog opens, so that typing replaces it.
     selects: bool,
 }
 
 impl NewEffect {
     /// A new effect without a name, or a duplicate with a name that is free.
-    pub fn new(duplicated: Option<Arc<Effect>>, catalog: &Catalog) -> Self {
+    pub fn new(duplicated: Option<Arc<Effect>>, catalog: &Catalog, folder: PathBuf) -> Self {
         let Some(effect) = duplicated else {
             return Self {
                 name: String::new(),
                 origin: Origin::Template(Hook::Surface),
                 error: None,
+                folder,
                 selects: false,
             };
         };
@@ -44,6 +47,7 @@ impl NewEffect {
             name,
             origin: Origin::Duplicate(effect),
             error: None,
+            folder,
             selects: true,
         }
     }
@@ -70,6 +74,7 @@ pub fn fields_ui(ui: &mut Ui, dialog: &mut NewEffect) -> bool {
         name,
         origin,
         error,
+        folder,
         selects,
     } = dialog;
     let (title, about) = match origin {
@@ -96,6 +101,11 @@ pub fn fields_ui(ui: &mut Ui, dialog: &mut NewEffect) -> bool {
             ui.radio_value(hook, option, self::about(option))
                 .accessible_name(option.name());
         }
+    }
+    let file = folder.join(format!("{}.wgsl", name.trim()));
+    let file = with_own_paths(file.display().to_string());
+    if !name.trim().is_empty() {
+        ui.label(theme::small(format!("It is written to {file}.")));
     }
     if let Some(error) = error {
         theme::notice(ui, theme::amber(), error);

@@ -262,14 +262,19 @@ fn name_ui(ui: &mut Ui, state: &State, commands: &Commands) {
         true if width > 150.0 => 70.0,
         true => 16.0,
     };
-    let look = if width - rest > 120.0 { 46.0 } else { 0.0 };
+    let is_on = open.look_id() == PLAIN;
+    let look = match is_on {
+        _ if width - rest <= 120.0 => 0.0,
+        true => 46.0,
+        false => 72.0,
+    };
     ui.scope(|ui| {
         ui.set_max_width((width - rest - look).max(0.0));
         ui.add(egui::Label::new(name).truncate().sense(Sense::hover()))
             .on_hover_text(file);
     });
     if look > 0.0 {
-        plain_ui(ui, [open.look_id() == PLAIN, is_modified], commands);
+        plain_ui(ui, [is_on, is_modified], commands);
     }
     if is_modified {
         dot(ui, theme::accent());
@@ -279,8 +284,8 @@ fn name_ui(ui: &mut Ui, state: &State, commands: &Commands) {
     }
 }
 
-/// A button of the plain look, which is pressed while that is on, also where its values were changed.
-/// Of another look the name tells.
+/// A button of the plain look, which is pressed and says so while that is on, also where its values
+/// were changed. Of another look the name tells, so that the button offers the plain one.
 fn plain_ui(ui: &mut Ui, [is_on, is_modified]: [bool; 2], commands: &Commands) {
     let hint = match (is_on, is_modified) {
         (true, false) => {
@@ -289,7 +294,8 @@ fn plain_ui(ui: &mut Ui, [is_on, is_modified]: [bool; 2], commands: &Commands) {
         (true, true) => "The plain look is on, with values changed: a click takes it as it was",
         _ => "Show this scene in the plain look",
     };
-    let button = egui::Button::new("Plain").small().selected(is_on);
+    let text = if is_on { "Plain" } else { "Show plain" };
+    let button = egui::Button::new(text).small().selected(is_on);
     let button = ui.add(button).on_hover_text(hint);
     let is_clicked = button.accessible_name(Action::Plain.label()).clicked();
     if is_clicked && (!is_on || is_modified) {
@@ -410,8 +416,8 @@ fn pins_ui(ui: &mut Ui, state: &State) {
         // In a narrow window the name needs the room more; the section Accuracy has them too.
         _ if ui.available_width() < 150.0 => return,
         (0, 1) | (1, 0) => words.clone(),
-        // The hint says by whom.
-        (file, own) if is_narrow(ui) => format!("{} pinned", file + own),
+        // Where the name needs the room, the hint says by whom.
+        (file, own) if ui.available_width() < 420.0 => format!("{} pinned", file + own),
         (count, 0) => format!("{count} options pinned by the preset"),
         (0, count) => format!("{count} options pinned by you"),
         (file, own) => format!("{} options pinned, {own} by you", file + own),
@@ -421,7 +427,7 @@ fn pins_ui(ui: &mut Ui, state: &State) {
         words => format!("Pinned by {who}:\n{}\n", words.join("\n")),
     };
     let hint = by("the preset", &of_file) + &by("you, not saved yet", &own);
-    ui.label(theme::weak("·"));
+    ui.add_space(theme::GAP);
     ui.label(RichText::new(text).size(12.0).color(theme::accent()))
         .on_hover_text(hint.trim_end());
 }

@@ -51,8 +51,7 @@ impl GoldenCheck {
             Outcome::Failed(reason) => format!("{golden}: {reason}"),
             _ => format!(
                 "After the reload the oracle drew the preset as its file has it and compared every pixel with {golden}. \
-                 rasterlab bless {} draws a new golden.",
-                self.file.id
+                 Judge > Review goldens shows both and takes the new one."
             ),
         }
     }

@@ -23,7 +23,7 @@ pub const WRONG_HINT: &str = "Wrong: pixels that show another triangle than the 
 const UNTIMED: &str = "– ms";
 
 /// What stands in place of an error that is not known yet.
-pub const UNJUDGED: &str = "– wrong pixels";
+const UNJUDGED: &str = "– wrong pixels";
 
 /// The cost of the picture on a screen, and what the number is.
 pub fn time_line(screen: Option<&Screen>) -> (String, String) {
@@ -99,6 +99,11 @@ pub fn error_text(findings: &Findings) -> String {
         count => format!(", {} lost to the race", group_digits(count)),
     };
     format!("{counts}{race}{}", color_text(report.max_color_delta))
+}
+
+/// What there is to say of the accuracy axes that are not shown.
+pub fn others_text(count: usize) -> String {
+    format!("{count} more axes decide about nothing in this picture.")
 }
 
 /// `no wrong pixel, 17 differ by rounding`.

@@ -4,7 +4,11 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use crate::{host::disk, preset::SceneSource, preset_file::PresetFile};
+use crate::{
+    host::disk,
+    preset::SceneSource,
+    preset_file::{self, PresetFile},
+};
 
 /// Files that are remembered.
 pub const CAPACITY: usize = 12;
@@ -17,7 +21,7 @@ pub struct Recents(Vec<PathBuf>);
 impl Recents {
     /// Puts `path` first.
     pub fn add(&mut self, path: &Path) {
-        let Ok(path) = disk::absolute(path) else {
+        let Some(path) = preset_file::normalized(path) else {
             return;
         };
         self.0.retain(|known| *known != path);

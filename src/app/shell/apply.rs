@@ -6,7 +6,10 @@ use super::{command::Edit, log::Level, state::State};
 use crate::{
     app::{
         App,
-        editing::apply::{report, set_text},
+        editing::{
+            apply::{report, set_text},
+            new_effect,
+        },
         files::{apply::request_open, command::Manner, library, scene_loader::SceneKey},
         picture::apply::draw_for_review,
         settings::Settings,
@@ -78,7 +81,10 @@ pub fn toggle_film(app: &mut App) {
 /// Asks for the name of a new effect, and for its hook unless it duplicates another effect.
 pub fn ask_new_effect(app: &mut App, duplicated: Option<Arc<Effect>>) {
     let effects = &app.state.session.preset_file.effects;
-    app.panels.dialogs.ask_new_effect(duplicated, effects);
+    let folder = new_effect::folder(&app.state);
+    app.panels
+        .dialogs
+        .ask_new_effect(duplicated, effects, folder);
 }
 
 /// Downloads every file that a page has as one archive.

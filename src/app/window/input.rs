@@ -51,6 +51,16 @@ pub fn shortcuts(ctx: &egui::Context, state: &State, held: &mut HeldTyping, comm
             // What is typed from here on is for the field that opens.
             ctx.memory_mut(|memory| memory.focused().map(|id| memory.surrender_focus(id)));
             held.hold_after(ctx, index, state.now_s);
+            // What a shortcut before it typed is for no field.
+            ctx.input_mut(|i| {
+                for event in &mut i.events[..index] {
+                    if let Event::Text(text) = event
+                        && !is_typing
+                    {
+                        text.clear();
+                    }
+                }
+            });
         }
         ctx.input_mut(|i| drop(i.events.remove(index)));
     }

@@ -337,6 +337,10 @@ fn hint(message: &str) -> String {
     let name = message
         .strip_prefix("no definition in scope for identifier: `")
         .and_then(|rest| rest.strip_suffix('`'));
+    if name == Some("time") {
+        return "; declare @given(seconds) time_s: f32 among the parameters, and read p.time_s"
+            .into();
+    }
     let declares = |name: &str, file: &&str| {
         let text = Library::Embedded.text(&format!("lib/{file}"));
         text.is_some_and(|text| {

@@ -150,9 +150,16 @@ impl Dialogs {
     }
 
     /// Asks for the name of a new effect, and for its hook unless it is a duplicate of
-    /// `duplicated`.
-    pub fn ask_new_effect(&mut self, duplicated: Option<Arc<Effect>>, catalog: &Catalog) {
-        self.open = Some(Dialog::NewEffect(NewEffect::new(duplicated, catalog)));
+    /// `duplicated`. Its file is written into `folder`.
+    pub fn ask_new_effect(
+        &mut self,
+        duplicated: Option<Arc<Effect>>,
+        catalog: &Catalog,
+        folder: PathBuf,
+    ) {
+        self.open = Some(Dialog::NewEffect(NewEffect::new(
+            duplicated, catalog, folder,
+        )));
     }
 
     /// Asks what becomes of unsaved changes and of `theirs`, the open preset as its file has it

@@ -10,7 +10,7 @@ use crate::{
     app::{
         picture::{
             anti_aliasing,
-            measured::{self, UNJUDGED, color_text, counts_text, time_line},
+            measured::{self, color_text, counts_text, others_text, time_line},
             tier_times::{self, TierNumbers, TierTime},
         },
         shell::{
@@ -143,7 +143,7 @@ fn tiers_ui(ui: &mut Ui, state: &State, commands: &Commands, chosen: Tier) {
                     time_text(numbers.time, state.picture.screen.gpu.caps.timestamps),
                     error_text(numbers, pixels)
                 ),
-                (None, _) if state.picture.screen.plan().is_none() => "not measured yet".into(),
+                (None, _) if state.picture.screen.plan().is_none() => "no time yet".into(),
                 (None, _) => "this picture cannot be drawn so".into(),
             };
             let color = match tier == chosen {
@@ -194,7 +194,7 @@ fn same_text(state: &State, tier: Tier, same: Tier) -> String {
 fn time_text(time: TierTime, has_timer: bool) -> String {
     match time {
         _ if !has_timer => "no GPU timer".into(),
-        TierTime::NotYet => "not measured yet".into(),
+        TierTime::NotYet => "no time yet".into(),
         TierTime::Failed => "not measured, see the log".into(),
         TierTime::Ms(ms) => format!("{} ms", short(ms)),
     }
@@ -220,16 +220,12 @@ fn error_text(numbers: &TierNumbers, pixels: f64) -> String {
 /// Milliseconds and error of the picture that is shown.
 fn numbers_ui(ui: &mut Ui, state: &State) {
     let time = time_line(Some(&state.picture.screen)).0;
-    let verdict = state
-        .picture
-        .verification
-        .verdict_on(state.picture.screen.drawn());
-    let wrong = verdict.map_or_else(
-        || format!("{UNJUDGED} (V)"),
-        |verdict| measured::error_text(&verdict.findings),
+    let (color, error, hint) = measured::error_line(
+        state.picture.verification.verdict(),
+        state.picture.screen.requested(),
     );
-    line_ui(ui, "measured", time, theme::text_strong());
-    line_ui(ui, "", wrong, theme::text_strong());
+    line_ui(ui, "this picture", time, theme::text_strong());
+    line_ui(ui, "", error, color).on_hover_text(hint);
 }
 
 /// The axes that decide about something in the picture, and those that the preset pins.
@@ -282,9 +278,7 @@ fn axes_ui(ui: &mut Ui, state: &State, commands: &Commands) {
                     .filter(|axis| reason(axis).is_some() || pins.get(axis).is_some())
                     .count();
             if others > 0 {
-                ui.label(theme::small(format!(
-                    "{others} more axes decide about nothing in this picture."
-                )));
+                ui.label(theme::small(others_text(others)));
             }
         });
 }

@@ -68,7 +68,7 @@ pub fn timing_ui(ui: &mut Ui, state: &State) {
 /// and so the picture another one.
 fn error_lines(findings: Option<&Findings>) -> Vec<(String, String)> {
     let Some(findings) = findings else {
-        return vec![("error".into(), "not measured".into())];
+        return vec![("error".into(), "not of this picture".into())];
     };
     let against_true = findings.wrong_against_true().map_or_else(
         || "not known".into(),

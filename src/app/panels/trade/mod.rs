@@ -13,7 +13,7 @@ use crate::{
     accuracy::{AXES, Axis},
     app::{
         editing::apply::pin_options,
-        picture::screen::Inputs,
+        picture::{measured::others_text, screen::Inputs},
         shell::apply::measure_trade,
         shell::{action::Action, command::Commands, log::Level, state::State},
         trade::{
@@ -225,7 +225,13 @@ impl TradePanel {
             .auto_shrink(false)
             .show(ui, |ui| {
                 ui.spacing_mut().item_spacing.y = 1.0;
-                for (axis, chosen) in AXES.iter().zip(&mut self.chosen) {
+                let plan = state.picture.screen.plan();
+                let decides = |axis| plan.is_none_or(|plan| plan.reason(axis).is_some());
+                let (shown, others): (Vec<_>, Vec<_>) = AXES
+                    .iter()
+                    .zip(&mut self.chosen)
+                    .partition(|(axis, chosen)| **chosen || decides(axis));
+                for (axis, chosen) in shown {
                     ui.horizontal(|ui| {
                         let hint = format!("{}\n{}", axis.about.trim(), axis.words.join(", "));
                         let checkbox = egui::Checkbox::new(chosen, axis.name.replace('_', " "));
@@ -236,6 +242,9 @@ impl TradePanel {
                             ui.label(theme::small(format!("{} options", axis.words.len())));
                         });
                     });
+                }
+                if !others.is_empty() {
+                    ui.label(theme::small(others_text(others.len())));
                 }
             });
     }

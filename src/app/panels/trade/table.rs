@@ -36,12 +36,21 @@ pub fn table_ui(
                     } else {
                         "options".to_owned()
                     };
-                    let errors = ["by rounding px", "color", "holes+doubles", "light ppm"];
-                    for heading in [options.as_str(), "", "ms", "5 %", "95 %"]
-                        .into_iter()
-                        .chain(metrics.iter().map(|metric| errors[*metric as usize]))
-                    {
+                    for heading in [options.as_str(), "verdict", "ms", "5 %", "95 %"] {
                         ui.label(theme::small(heading));
+                    }
+                    for metric in &metrics {
+                        // Two lines, so that the columns fit into a small window.
+                        let name = metric.name().replace("and ", "and\n");
+                        let heading = match name.contains('\n') {
+                            true => name,
+                            false => name.replacen(' ', "\n", 1),
+                        };
+                        ui.label(theme::small(heading)).on_hover_text(format!(
+                            "{}, {}",
+                            metric.name(),
+                            metric.unit()
+                        ));
                     }
                     ui.end_row();
                     for i in order {

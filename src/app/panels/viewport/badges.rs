@@ -24,10 +24,29 @@ pub fn badges_ui(ui: &mut Ui, state: &State, rect: Rect) {
             for (subject, text) in faults {
                 theme::toast_frame(theme::red()).show(ui, |ui| {
                     ui.label(RichText::new(title(subject)).color(theme::red()).strong());
-                    ui.label(theme::strong(text).monospace());
+                    for line in text.lines() {
+                        let line = theme::strong(line_without_indent(text, line)).monospace();
+                        let is_code = line.text().contains(" |");
+                        // A mark below code stays below it.
+                        let label = egui::Label::new(line);
+                        ui.add(if is_code { label.extend() } else { label });
+                    }
                 });
             }
         });
+}
+
+/// A line of an excerpt of code without the blanks that its code begins with.
+fn line_without_indent(excerpt: &str, line: &str) -> String {
+    let code = |line: &'_ str| line.split_once("| ").map(|(_, code)| code.to_owned());
+    let indents = excerpt.lines().filter_map(code);
+    let indent = indents
+        .map(|code| code.len() - code.trim_start().len())
+        .min();
+    match line.split_once("| ") {
+        Some((number, code)) => format!("{number}| {}", &code[indent.unwrap_or(0)..]),
+        None => line.to_owned(),
+    }
 }
 
 fn title(subject: &Subject) -> String {
