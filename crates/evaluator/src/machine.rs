@@ -219,14 +219,18 @@ impl Program {
                     let to = d + rows[b][lane].get().to_u32() as usize;
                     (0..c).for_each(|at| rows[to + at][lane].set(rows[a + at][lane].get()));
                 }),
-                Op::External => each_lane(active, |lane| {
-                    external.clear();
-                    external.extend(rows[a..a + b + c].iter().map(|row| row[lane].get()));
+                Op::External => {
+                    external.resize(b + c, Word::ZERO);
                     let (arguments, result) = external.split_at_mut(b);
-                    host.external(d, lane, arguments, result);
-                    let results = rows[a + b..a + b + c].iter().zip(result);
-                    results.for_each(|(row, word)| row[lane].set(*word));
-                }),
+                    let (given, results) = rows[a..a + b + c].split_at(b);
+                    each_lane(active, |lane| {
+                        let given = arguments.iter_mut().zip(given);
+                        given.for_each(|(word, row)| *word = row[lane].get());
+                        host.external(d, lane, arguments, result);
+                        let results = results.iter().zip(&*result);
+                        results.for_each(|(row, word)| row[lane].set(*word));
+                    });
+                }
                 Op::Jump => next = d,
                 Op::JumpIf | Op::JumpIfNot | Op::JumpIfEqual => {
                     let wanted = if i.op == Op::JumpIfEqual { i.b } else { 0 };

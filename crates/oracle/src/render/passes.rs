@@ -147,17 +147,23 @@ pub fn gamma_encoded(color: DVec4) -> DVec4 {
     DVec4::new(srgb(color.x), srgb(color.y), srgb(color.z), color.w)
 }
 
-/// Bytes of the picture that the passes of a stack make of `start`, and what the kept one wrote.
+/// Bytes of the picture that the passes of a stack make of `start`, and what the kept one wrote. If
+/// the picture is not `shown`, it has no bytes, and no pass after the kept one is drawn.
 pub fn passed(
     shot: &Shot,
     input: &ResolveInput,
     start: PassStart<'_>,
+    shown: bool,
 ) -> Result<(Vec<[u8; 4]>, Option<KeptPass>), Canceled> {
     let tables = PictureTables::of(shot);
     let picture = tables.picture(shot, input);
     let mut source = begun(shot, start.resolved)?;
     let (mut last, mut kept) = (None::<Image>, None);
-    for step in steps(shot, start.kept) {
+    let mut steps = steps(shot, start.kept);
+    if !shown {
+        steps.truncate(steps.iter().rposition(Step::is_kept).map_or(0, |at| at + 1));
+    }
+    for step in steps {
         let read = [&source, last.as_ref().unwrap_or(&source)];
         let written = step.written(shot, &picture, read, PassPerturbation::default())?;
         if step.is_kept() {
@@ -172,6 +178,9 @@ pub fn passed(
         } else {
             last = Some(written);
         }
+    }
+    if !shown {
+        return Ok((Vec::new(), kept));
     }
     let encoded = source.colors.into_iter().map(gamma_encoded);
     Ok((encoded.map(bytes).collect(), kept))

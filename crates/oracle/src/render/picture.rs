@@ -135,7 +135,7 @@ fn drawn(
             resolved: &color,
             kept: earlier.map_or(&[], |earlier| earlier.kept),
         };
-        let (passed, kept) = passed(&shot, &input, start)?;
+        let (passed, kept) = passed(&shot, &input, start, !asked.is_empty())?;
         let [first, end] = [asked.start, asked.end].map(|row| (row * view.width) as usize);
         (passed[first..end.max(first)].to_vec(), Some(color), kept)
     } else {
@@ -163,13 +163,12 @@ fn drawn(
 /// If `sequence` is empty.
 pub fn render_sequence(scene: &Scene, sequence: &[(View, Stack)]) -> Result<Frame, DrawError> {
     let mut last: Option<Frame> = None;
-    for (view, stack) in sequence {
-        last = Some(render_next(
-            scene,
-            view,
-            stack,
-            last.as_ref().map(Frame::earlier),
-        )?);
+    for (at, (view, stack)) in sequence.iter().enumerate() {
+        // Of the pictures before the last one nobody sees what passes make of them.
+        let is_seen = at + 1 == sequence.len() || !stack.has_passes();
+        let rows = 0..if is_seen { view.height } else { 0 };
+        let earlier = last.as_ref().map(Frame::earlier);
+        last = Some(render_rows(scene, view, stack, earlier, rows)?);
     }
     Ok(last.expect("a sequence has a picture"))
 }

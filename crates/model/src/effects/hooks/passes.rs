@@ -44,11 +44,11 @@ impl Image {
         let [x, y] = [grid(at.x), grid(at.y)];
         let (right, down) = ((x & 255) as f64 / 256.0, (y & 255) as f64 / 256.0);
         let row = |y: i64| {
-            let [near, far] = [0, 1].map(|step| self.at((x >> 8) + step, y));
-            near + (far - near) * right
+            let near = self.at(x >> 8, y);
+            near + (self.at((x >> 8) + 1, y) - near) * right
         };
-        let [upper, lower] = [0, 1].map(|step| row((y >> 8) + step));
-        upper + (lower - upper) * down
+        let upper = row(y >> 8);
+        upper + (row((y >> 8) + 1) - upper) * down
     }
 }
 

@@ -22,21 +22,21 @@ impl Host for PictureHost<'_> {
                 i64::from(arguments[1].to_i32()),
             )
         };
-        let pixel = pixels.get(lane).copied().unwrap_or(0);
-        let row = pixel as u32 / picture.width;
+        let pixel = || pixels.get(lane).copied().unwrap_or(0);
+        let row = || pixel() as u32 / picture.width;
         match index {
             0 => result[0] = Word::from_bool(picture.has(at().0, at().1)),
             1 => {
                 let (id, key, draw) = picture.at(at().0, at().1);
                 result.copy_from_slice(&[id.unwrap_or(u32::MAX), key, draw].map(Word::from_u32));
             }
-            2 => result.copy_from_slice(&picture.background(row).to_array().map(Word::from_f64)),
+            2 => result.copy_from_slice(&picture.background(row()).to_array().map(Word::from_f64)),
             3 => result.copy_from_slice(&[picture.width, picture.height].map(Word::from_u32)),
             _ => {
-                let background = picture.background[row as usize].map(u32::from);
+                let background = picture.background[row() as usize].map(u32::from);
                 let bytes = picture
                     .previous
-                    .map_or(background, |previous| previous[pixel].map(u32::from));
+                    .map_or(background, |previous| previous[pixel()].map(u32::from));
                 result.copy_from_slice(&bytes.map(Word::from_u32));
             }
         }
