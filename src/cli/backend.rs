@@ -287,6 +287,12 @@ pub fn scene_of(
     Ok(scene)
 }
 
+/// Errors: the model of a preset is missing, which is said before what is wrong with the output.
+pub fn check_model(preset_file: &PresetFile) -> Result<(), CliError> {
+    preset_file::check_model(&preset_file.preset, preset_file.path.as_deref())
+        .map_err(|error| CliError::from(error).during(format!("preset {}", preset_file.id)))
+}
+
 /// Tells what a person should know of the scene of a picture.
 pub fn tell(preset: &Preset, scene: &Scene, streams: &Streams) {
     scene.notes.iter().for_each(|note| streams.note(note));

@@ -287,14 +287,14 @@ fn particles_text(particles: &ParticleErrors) -> String {
 
 fn check_text(check: &Check) -> String {
     let verdict = match (check.is_within_tolerance, check.prediction_holds) {
-        (true, true) => "as predicted",
-        (true, false) => "more than predicted",
-        (false, _) => "OVER THE TOLERANCE",
+        (true, true) => "the prediction holds",
+        (true, false) => "that is more than predicted",
+        (false, _) => "that is OVER THE TOLERANCE",
     };
     format!(
-        "error      at most {:.0} ppm of the pixels with another triangle predicted, {:.0} measured, {:.0} allowed, and {:.0} more by rounding of \
-         corners: {verdict}\n",
-        check.predicted.wrong_ppm, check.wrong_ppm, check.tolerance.wrong_ppm, check.snap_ppm
+        "error      of a million pixels {:.0} show another triangle than the oracle's picture; at most {:.0} were predicted, and {:.0} are \
+         allowed, with up to {:.0} more where corners are rounded: {verdict}\n",
+        check.wrong_ppm, check.predicted.wrong_ppm, check.tolerance.wrong_ppm, check.snap_ppm
     )
 }
 
@@ -390,16 +390,45 @@ fn chart(sizes: &SizesNote) -> String {
     }) = sizes.predicted
     {
         text += &format!(
-            "  predicted {small:.0} small, {medium:.0} medium, {large:.0} large, each ± {error_bound:.0}"
+            "  the plan predicted {small:.0} small triangles, {medium:.0} medium and {large:.0} large ones, each ± {error_bound:.0}"
         );
         if let Some([medium, large]) = sizes.counted {
-            text += &format!("; the queues counted {medium} medium, {large} large");
+            text += &format!("; the queues counted {medium} medium and {large} large ones");
         }
         text += match sizes.prediction_holds {
-            Some(true) => ": as predicted\n",
+            Some(true) => ": the prediction holds\n",
             Some(false) => ": NOT AS PREDICTED\n",
             None => "\n",
         };
     }
     text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_error_is_told_in_a_sentence() {
+        let check = Check {
+            predicted: Prediction {
+                wrong_ppm: 3.0,
+                ..Prediction::default()
+            },
+            tolerance: Tolerance {
+                wrong_ppm: 0.0,
+                channel: 0,
+            },
+            wrong_ppm: 2.0,
+            snap_ppm: 100.0,
+            is_within_tolerance: true,
+            prediction_holds: true,
+        };
+        let text = check_text(&check);
+        assert!(
+            text.contains("of a million pixels 2 show another triangle")
+                && text.contains("at most 3 were predicted"),
+            "{text}"
+        );
+    }
 }

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use super::{
     args::{Common, Page},
-    backend::{Backend, scene_of},
+    backend::{Backend, check_model, scene_of},
     error::{CliError, Exit},
     files,
     open::open_as,
@@ -28,6 +28,7 @@ pub fn run(common: &Common, args: &Page, streams: &mut Streams) -> Result<Exit, 
             preset_file.id, size[0], size[1]
         )));
     }
+    check_model(&preset_file)?;
     if is_taken(&args.output) && !common.force {
         return Err(CliError::usage(format!(
             "{} exists; --force overwrites it",

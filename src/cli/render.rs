@@ -7,7 +7,7 @@ use serde_json::json;
 use super::{
     args::{Common, Render},
     arrays,
-    backend::{Backend, scene_of, scene_with_warnings, tell},
+    backend::{Backend, check_model, scene_of, scene_with_warnings, tell},
     error::{CliError, Exit},
     files::{self, Names},
     open::{named, open, retake},
@@ -31,6 +31,7 @@ pub fn run(common: &Common, args: &Render, streams: &mut Streams) -> Result<Exit
         .iter()
         .flat_map(PresetFile::remarks)
         .for_each(|remark| streams.note(&remark));
+    preset_files.iter().try_for_each(check_model)?;
     let mut backend = Backend::open(common, streams)?;
     // Existing files are reported before anything is drawn.
     let picture = (!to_stdout).then_some(&args.output);

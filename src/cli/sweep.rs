@@ -6,7 +6,7 @@ use serde_json::json;
 
 use super::{
     args::{Common, Sweep},
-    backend::{Backend, scene_of},
+    backend::{Backend, check_model, scene_of},
     error::{CliError, Exit},
     files,
     open::open_as,
@@ -53,6 +53,7 @@ pub fn run(common: &Common, args: &Sweep, streams: &mut Streams) -> Result<Exit,
         let loaded = scene_of(common, &mut base, streams)?;
         scene = Some(Shown::new(&base.preset, loaded));
     }
+    check_model(&base)?;
     // The reader of values names --set in its errors; here the values come from --vary.
     let sheet = Sheet::new(&base, &variations)
         .map_err(|error| CliError::usage(error.replacen("--set", "--vary", 1)))?;

@@ -133,7 +133,7 @@ fn what_was_measured_decides_which_option_is_cheaper_and_the_tolerance_whether_i
     let (plan, _) = planned_for(&Caps::ALL, "teapot?tess=4", "", &["lambert"], request);
     let why = plan.reason(&AXES[Visibility::AXIS]).expect("a reason");
     assert!(
-        why.starts_with("packed32: 0.80 of the default's time as measured here"),
+        why.starts_with("packed32: it takes 0.80 of the default's time as measured here"),
         "{why}"
     );
 }

@@ -356,7 +356,12 @@ fn settle(state: &mut State, key: SceneKey, scene: &Scene) -> SceneKey {
 pub fn take_scene(app: &mut App, key: SceneKey, loaded: Result<Arc<Scene>, String>) {
     match loaded {
         Ok(scene) => {
-            for note in &scene.notes {
+            let scenes = &app.state.session.scenes;
+            for note in scene
+                .notes
+                .iter()
+                .filter(|note| !scenes.has_told(&key, note))
+            {
                 let text = format!("{}: {note}", scene.name);
                 app.state.log.add(Level::Warning, text);
             }

@@ -135,6 +135,14 @@ impl SceneLoader {
             .map(|(_, scene)| scene.subject_bounds(None))
     }
 
+    /// Was a note told with the same source, as it was loaded for another look?
+    pub fn has_told(&self, key: &SceneKey, note: &String) -> bool {
+        let mut known = self.shown.iter().chain(&self.recent);
+        known.any(|(other, scene)| {
+            other != key && other.source == key.source && scene.notes.contains(note)
+        })
+    }
+
     /// True if the scene of `key` is shown or cannot be loaded.
     pub fn is_settled(&self, key: &SceneKey) -> bool {
         self.shown_for(key).is_some() || self.failed.as_ref() == Some(key)
@@ -237,6 +245,20 @@ mod tests {
             ["d", "e"].map(|name| loader.has(&key(name))),
             [false, true],
             "the newest is kept however large it is"
+        );
+    }
+
+    #[test]
+    fn a_scene_that_is_loaded_again_for_a_look_tells_its_notes_once() {
+        let (plain, mut in_room, note) = (key("a"), key("a"), "it is truncated".to_owned());
+        in_room.room = 2.0;
+        let mut loader = SceneLoader::default();
+        let mut scene = Scene::default();
+        scene.notes.push(note.clone());
+        loader.take_scene(plain.clone(), Some(Arc::new(scene)));
+        assert_eq!(
+            [plain, in_room, key("b")].map(|key| loader.has_told(&key, &note)),
+            [false, true, false]
         );
     }
 

@@ -97,7 +97,7 @@ const EXPECTED: &[(&str, &str)] = &[
     ("glTF/", "is not supported; export as version 2.0"),
     (
         "glTF2/BoxWithInfinites",
-        "POSITION: vertex 0 has a value that is not finite",
+        "POSITION: vertex 0 has a value that is not finite, as has each of its triangles",
     ),
     (
         "glTF2/IndexOutOfRange/All",

@@ -577,7 +577,7 @@ fn ply_is_read_by_what_its_header_says() {
         );
         // Of a row that is cut off nothing is drawn.
         bytes.pop();
-        let sentence = "there is nothing to draw: the file ends after 0 of 1 rows of \"face\"; what is there is drawn";
+        let sentence = "there is nothing to draw: the file ends after 0 of 1 rows of \"face\"; what is there is drawn; fetch or export it again";
         refused(load_ply, &bytes, sentence);
     }
 }
@@ -624,14 +624,18 @@ fn a_broken_part_is_left_out_and_told_once_and_what_leaves_nothing_is_refused() 
         ("flag.png", &encoded(image::ImageFormat::Png)),
     ];
     let transcript = include_str!("mesh_files.txt").replace("BROKEN", &broken);
-    play(&transcript.replace("NAN", &nan), beside);
+    let points = "ply\\nformat ascii 1.0\\nelement vertex 8\\nproperty float x\\nproperty float y\\nproperty float z\\nend_header\\n";
+    play(
+        &transcript.replace("NAN", &nan).replace("POINTS", points),
+        beside,
+    );
     let mut far = stl(b"", &[(SQUARE_HALF, 0), (OTHER_HALF, 0)]);
     far[84 + 12..84 + 16].copy_from_slice(&f32::INFINITY.to_le_bytes());
     told(
         load_stl,
         far,
         &[],
-        &["triangle 0: a corner has a value that is not finite; it is left out"],
+        &["triangle 0: the numbers of a corner are not below 6.9e10; it is left out"],
     );
 }
 

@@ -187,7 +187,7 @@ fn a_polygon_beyond_the_limit_is_left_out_and_one_below_it_ends() {
         .unwrap_err()
         .to_string();
     let wanted = "it is not convex and has 16385 corners; allowed: at most 16384; it is left out";
-    assert!(error.ends_with(wanted), "{error}");
+    assert!(error.contains(wanted), "{error}");
 }
 
 const MTL: &[u8] = b"newmtl a\nKd 1 0 0\nmap_Kd -o 1 a.mtl\n";

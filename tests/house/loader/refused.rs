@@ -66,12 +66,22 @@ fn accessors_views_strides_and_types_must_fit_each_other() {
 }
 
 #[test]
-fn values_that_are_not_finite_are_refused() {
+fn values_that_are_not_finite_are_left_out() {
     for bad in ["nan", "inf", "-inf"] {
         let transcript = r#"
-            & VEC3 F32 0.5*10 BAD 0.5
+            & VEC3 F32 0 0 0 1 0 0 1 1 0 0 BAD 0
             A/POSITION 2
-            ! mesh "X" primitive 0 POSITION: vertex 3 has a value that is not finite
+            ~ mesh "X" primitive 0 POSITION: vertex 3 has a value that is not finite; 1 of 2 triangles have such a vertex and are left out
+            & VEC3 F32 0 0 0 1 0 0 1 1 0 0 1e12 0
+            A/POSITION 2
+            ~ mesh "X" primitive 0 POSITION: vertex 3 lies beyond 6.9e10; 1 of 2 triangles have such a vertex and are left out
+            & VEC3 F32 0 0 0 1 0 0 1 1 0 0 BAD 0
+            A/POSITION 2
+            P/mode 1
+            ~ 1 of 3 lines have such a vertex
+            & VEC3 F32 BAD 0.5*11
+            A/POSITION 2
+            ! mesh "X" primitive 0 POSITION: vertex 0 has a value that is not finite, as has each of its triangles
             & VEC3 F32 0.5*10 BAD 0.5
             A/NORMAL 2
             ~ mesh "X" primitive 0 NORMAL: vertex 3 has a value that is not finite

@@ -65,5 +65,5 @@ pub use picture::{
     Provenance, pixels_of_png, png_bytes, png_of_frame, png_pixels, png_with_preset,
     preset_from_png,
 };
-pub use scene::{SceneError, load_scene, load_scene_beside, scene_bounds};
+pub use scene::{SceneError, check_model, load_scene, load_scene_beside, scene_bounds};
 pub use share::{from_line, is_preset_text, to_line};

@@ -1,6 +1,9 @@
 //! The scene of a preset, built or loaded.
 
-use std::{path::Path, sync::Arc};
+use std::{
+    path::{Path, PathBuf},
+    sync::Arc,
+};
 
 use super::{
     file::model_path,
@@ -80,6 +83,28 @@ pub fn scene_bounds(
     Ok(load_source(source, &shown, preset_path)?.subject_bounds(None))
 }
 
+/// Is the model of the preset there, if it has one?
+///
+/// # Errors
+/// It is not.
+pub fn check_model(preset: &Preset, preset_path: Option<&Path>) -> Result<(), SceneError> {
+    match &preset.scene {
+        SceneSource::Builtin(_) => Ok(()),
+        SceneSource::File(model) => found(model, preset_path).map(drop),
+    }
+}
+
+/// The path of a model that is there.
+fn found(model: &Path, preset_path: Option<&Path>) -> Result<PathBuf, SceneError> {
+    let path = model_path(model, preset_path);
+    match disk::exists(&path) {
+        true => Ok(path),
+        false => Err(SceneError::Absent {
+            path: path.display().to_string(),
+        }),
+    }
+}
+
 /// The whole scene of a source, with the variant and the axis up that `shown` names.
 fn load_source(
     source: &SceneSource,
@@ -89,12 +114,7 @@ fn load_source(
     match source {
         SceneSource::Builtin(query) => Ok(builtin::build(query)?.turned_up(up.or(UpAxis::Y))),
         SceneSource::File(model) => {
-            let path = model_path(model, preset_path);
-            if !disk::exists(&path) {
-                return Err(SceneError::Absent {
-                    path: path.display().to_string(),
-                });
-            }
+            let path = found(model, preset_path)?;
             // What has another extension is loaded too, if it is one by its content.
             let format = ModelFormat::of(&path).unwrap_or(&MODEL_FORMATS[0]);
             let mut scene = format.load_variant(&path, variant)?;

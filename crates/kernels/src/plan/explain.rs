@@ -99,7 +99,7 @@ impl Plan {
                     ""
                 };
                 format!(
-                    "{word}: {fraction:.2} of the default's time{measured}, predicted error {:.0} of {:.0} ppm, {:.1} of {} in color",
+                    "{word}: it takes {fraction:.2} of the default's time{measured}; its error is predicted as {:.0} of a million pixels, of {:.0} allowed, and {:.1} in color, of {} allowed",
                     own.wrong_ppm, self.tolerance.wrong_ppm, own.channel, self.tolerance.channel
                 )
             }

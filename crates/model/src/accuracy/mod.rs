@@ -134,7 +134,7 @@ axes! {
         FloatTopLeft = "float-top-left",
         /// Exact edges between corners snapped to 1/16 px.
         Fixed4 = "fixed4",
-        /// Exact edges between corners snapped to 1/256 px.
+        /// Triangles have exact edges between corners snapped to 1/256 px.
         Fixed8 = "fixed8",
         /// Exact edges between corners snapped to 1/4096 px, in pictures of at most 2,047 px a side.
         Fixed12 = "fixed12",
@@ -145,7 +145,7 @@ axes! {
         Packed10 = "packed10",
         /// 16 bits per axis, in the same way: 8 bytes per vertex.
         Packed16 = "packed16",
-        /// As the file stores them.
+        /// Positions are as the file stores them.
         Stored = "stored",
         /// As the file stores them, then relative to the eye, computed in f64: exact far from the origin, too.
         Relative = "relative",
@@ -154,14 +154,14 @@ axes! {
     vertex_transform: VertexTransform, default Snapped {
         /// In floats, the shift of the viewport included, then snapped.
         Viewport = "viewport",
-        /// In floats relative to the center of the picture, then snapped.
+        /// Vertices are projected in floats relative to the center of the picture, then snapped.
         Snapped = "snapped",
         /// In integer arithmetic: the same bits on every adapter and on the CPU.
         Strict = "strict",
     }
     /// How the joints of a skin are blended.
     skinning: Skinning, default Linear {
-        /// The mean of their matrices, as in glTF: where joints twist or bend, volume is lost.
+        /// The matrices of joints are averaged, as in glTF: where joints twist or bend, volume is lost.
         Linear = "linear",
         /// The mean of their motions as dual quaternions: lengths are kept, and nearly all volume.
         Dual = "dual",
@@ -170,14 +170,14 @@ axes! {
     curl_noise: CurlNoise, default Analytic {
         /// From six samples around a point.
         Difference = "difference",
-        /// From the exact derivatives of the noise, which take one lattice lookup.
+        /// The flow comes from the exact derivatives of the noise, which take one lattice lookup.
         Analytic = "analytic",
     }
     /// How particles are stored between steps.
     particle_storage: ParticleStorage, default Float32 {
         /// Positions as 16-bit fractions of their bounds, velocities as halves: 16 bytes per particle.
         Half16 = "half16",
-        /// All numbers as floats: 32 bytes per particle.
+        /// All numbers are floats: 32 bytes per particle.
         Float32 = "float32",
     }
     /// Which depth values are compared.
@@ -190,7 +190,7 @@ axes! {
         Log24 = "log24",
         /// Conventional float depth, 32 bits: 0 at the near plane, 1 far away.
         Standard = "standard",
-        /// Reversed float depth, 32 bits: 1 at the near plane, 0 far away.
+        /// Depth is a reversed float of 32 bits: 1 at the near plane, 0 far away.
         Reversed = "reversed",
         /// Reversed depth from a quotient of integers: the same bits wherever the corners are the same.
         Integer = "integer",
@@ -203,14 +203,14 @@ axes! {
         Packed32 = "packed32",
         /// Portable: a depth pass, then a triangle id pass.
         Split32 = "split32",
-        /// One 64-bit atomic per sample.
+        /// One 64-bit atomic per sample keeps the nearest.
         Packed64 = "packed64",
     }
     /// How attributes are interpolated across a triangle.
     perspective: Perspective, default Exact {
         /// Linearly on the screen, as if every corner were equally far.
         Affine = "affine",
-        /// Divided by w at every sample.
+        /// Attributes are divided by w at every sample.
         Exact = "exact",
     }
     /// What happens to triangles that cross the near plane or the guard band.
@@ -219,12 +219,12 @@ axes! {
         Drop = "drop",
         /// Those that cross the near plane are not drawn, the others are clipped.
         Near = "near",
-        /// They are clipped.
+        /// Such triangles are clipped.
         Exact = "exact",
     }
     /// What is skipped before its triangles are set up.
     culling: Culling, default None {
-        /// Nothing: each triangle is tested on its own.
+        /// Nothing is skipped: each triangle is tested on its own.
         None = "none",
         /// Instances and meshlets outside the picture, and meshlets that all face away.
         Frustum = "frustum",
@@ -237,7 +237,7 @@ axes! {
     sample_counter: SampleCounter, default Prefix {
         /// Load, test and add without atomics: it overshoots.
         Racy = "racy",
-        /// Prefix sums, or one atomic per sample: exact.
+        /// Prefix sums, or one atomic per sample, count exactly.
         Prefix = "prefix",
     }
     /// How an x-ray sums the layers of a pixel.
@@ -246,7 +246,7 @@ axes! {
         Packed16 = "packed16",
         /// Three words, channels of 8 bits: up to 4,095 layers of equal weight.
         Three8 = "three8",
-        /// Four words, channels of 8 to 16 bits: as many layers as the bits leave room for, with weights.
+        /// Layers are summed in four words, channels of 8 to 16 bits: as many layers as the bits leave room for, with weights.
         Four32 = "four32",
     }
     /// How what is seen through layers is composed.
@@ -257,7 +257,7 @@ axes! {
         Weighted = "weighted",
         /// The four nearest layers in the order of depth; the others are left out.
         Nearest4 = "nearest4",
-        /// All layers in the order of depth.
+        /// All layers are composed in the order of depth.
         Exact = "exact",
     }
     /// How many pixels are drawn per shown pixel.
@@ -266,7 +266,7 @@ axes! {
         Quarter = "quarter",
         /// A quarter (half per side), then interpolated in linear light.
         Half = "half",
-        /// One.
+        /// One pixel is drawn per shown pixel.
         Full = "full",
         /// Four (two per side), then averaged in linear light.
         Double = "double",
@@ -288,7 +288,7 @@ axes! {
         Side256 = "256",
         /// 512 texels a side.
         Side512 = "512",
-        /// 1,024 texels a side.
+        /// The map has 1,024 texels a side.
         Side1024 = "1024",
         /// 2,048 texels a side.
         Side2048 = "2048",
@@ -299,7 +299,7 @@ axes! {
     shadow_taps: ShadowTaps, default Nine {
         /// The one under the sample: hard edges, as jagged as the map.
         One = "1",
-        /// 3 by 3, weighted smoothly from texel to texel.
+        /// 3 by 3 texels are weighted smoothly from texel to texel.
         Nine = "9",
         /// 5 by 5: softer edges.
         TwentyFive = "25",
@@ -308,14 +308,14 @@ axes! {
     parameters: Parameters, default Uniform {
         /// As constants in the shader text: new text for every value.
         Baked = "baked",
-        /// In a uniform buffer.
+        /// Kernels read them from a uniform buffer.
         Uniform = "uniform",
     }
     /// Whether the compiler adds checks to the kernels.
     shader_checks: ShaderChecks, default Checked {
         /// None: loops and indices are trusted, except where pixels are shaded whose corners an effect has moved.
         Trusted = "trusted",
-        /// Loops are bounded, indices clamped.
+        /// Loops are bounded, and indices are clamped.
         Checked = "checked",
     }
 }

@@ -6,6 +6,15 @@ use glam::{DMat4, DVec3};
 /// are finite in f32.
 pub const MAX_MAGNITUDE: f64 = (1u64 << 40) as f64;
 
+/// Exclusive limit of the coordinates that readers keep, 2^36: the matrices of a camera that frames
+/// such places stay below [`MAX_MAGNITUDE`].
+pub const MAX_PLACE: f64 = (1u64 << 36) as f64;
+
+/// Is it a place that can be drawn?
+pub fn is_near(place: [f64; 3]) -> bool {
+    place.iter().all(|value| value.abs() < MAX_PLACE)
+}
+
 /// Axis-aligned box in meters, both ends included. Empty when `min` exceeds `max` on any axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {

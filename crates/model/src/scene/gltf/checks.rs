@@ -3,12 +3,12 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::error::LoadError;
+use super::{buffers::SceneWriter, error::LoadError};
 use crate::{
     scene::{
         accessor::Accessor,
-        bounds::Bounds,
-        model::{Primitive, Scene},
+        bounds::{Bounds, is_near},
+        model::{Primitive, Scene, Topology},
         texture::{MAX_REPEATS, Texture, texcoord},
     },
     work::{Canceled, checkpoint, map_parts},
@@ -91,9 +91,66 @@ pub fn check_repeats(
     }
 }
 
+/// Leaves out the triangles, lines and points with a vertex that cannot be drawn. Returns a sentence
+/// about them; none where there are none.
+///
+/// # Errors
+/// None is left.
+pub fn leave_out_far(
+    writer: &mut SceneWriter,
+    primitive: &mut Primitive,
+) -> Result<Option<String>, LoadError> {
+    let scene = &writer.scene;
+    let place = |vertex: u32| primitive.position(scene, vertex);
+    let is_near = |vertex: &u32| is_near(place(*vertex).map(f64::from));
+    let count = primitive.vertex_count();
+    let Some(vertex) = first(count, |vertex| !is_near(&vertex))? else {
+        return Ok(None);
+    };
+    let reason = match place(vertex).iter().all(|value| value.is_finite()) {
+        true => format!("vertex {vertex} lies beyond 6.9e10"),
+        false => format!("vertex {vertex} has a value that is not finite"),
+    };
+    let (what, step, topology) = match primitive.topology {
+        Topology::Points => ("points", 1, Topology::Points),
+        Topology::Lines => ("lines", 2, Topology::Lines),
+        _ => ("triangles", 1, Topology::List),
+    };
+    let all = primitive.triangle_count();
+    let mut indices: Vec<u32> = Vec::new();
+    for triangle in (0..all).step_by(step) {
+        let [a, b, c] = primitive.corners(scene, triangle);
+        if [a, b, c].iter().all(is_near) {
+            match topology {
+                Topology::Points => indices.push(a),
+                Topology::Lines => indices.extend([a, c]),
+                _ => indices.extend([a, b, c]),
+            }
+        }
+    }
+    let Some(&kept) = indices.first() else {
+        return Err(LoadError::new(format!(
+            "{reason}, as has each of its {what}; export it again"
+        )));
+    };
+    let left = topology.triangles(indices.len() as u32);
+    let told = format!(
+        "{reason}; {} of {} {what} have such a vertex and are left out",
+        (all - left) / step as u32,
+        all / step as u32
+    );
+    // Nothing uses the others, which must not widen its box.
+    let places: Vec<_> = (0..count)
+        .map(|vertex| place(if is_near(&vertex) { vertex } else { kept }))
+        .collect();
+    primitive.positions = writer.append_vectors(places.len(), places.into_iter())?;
+    primitive.indices = Some(writer.append_indices(&indices)?);
+    primitive.topology = topology;
+    Ok(Some(told))
+}
+
 /// Computes the bounds and the longest edge. Positions must be finite.
-pub fn measure(scene: &Scene, primitive: &mut Primitive) -> Result<(), LoadError> {
-    check_finite(scene, &primitive.positions)?;
+pub fn measure(scene: &Scene, primitive: &mut Primitive) -> Result<(), Canceled> {
     let at = |vertex: u32| DVec3::from(primitive.position(scene, vertex).map(f64::from));
     let boxes = map_parts(primitive.vertex_count(), |part| {
         let mut bounds = Bounds::EMPTY;

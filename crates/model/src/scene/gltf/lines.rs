@@ -1,7 +1,7 @@
-//! Lines whose corners are each joined to the next.
+//! Index lists that the file does not have, as of lines whose corners are each joined to the next.
 
 use super::{
-    buffers::{SceneWriter, make_room},
+    buffers::{SceneWriter, append, make_room},
     document::Chain,
     error::LoadError,
 };
@@ -30,13 +30,24 @@ impl SceneWriter<'_> {
             };
             bytes.extend_from_slice(&index.to_le_bytes());
         }
-        Ok(Accessor {
-            offset,
-            stride: 4,
-            component_type: ComponentType::U32,
-            components: 1,
-            normalized: false,
-            count: 2 * segments,
-        })
+        Ok(list(offset, 2 * segments))
+    }
+
+    /// Appends an index list.
+    pub fn append_indices(&mut self, indices: &[u32]) -> Result<Accessor, LoadError> {
+        let (limits, bytes) = (&self.buffers.limits, &mut self.scene.index_bytes);
+        let offset = append(limits, bytes, bytemuck::cast_slice(indices))?;
+        Ok(list(offset, indices.len() as u32))
+    }
+}
+
+fn list(offset: u32, count: u32) -> Accessor {
+    Accessor {
+        offset,
+        stride: 4,
+        component_type: ComponentType::U32,
+        components: 1,
+        normalized: false,
+        count,
     }
 }

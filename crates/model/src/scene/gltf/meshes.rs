@@ -9,7 +9,9 @@ use glam::{DMat4, DVec3};
 
 use super::{
     buffers::{Buffers, FLOAT, FLOAT_OR_UNORM, Format, QUANTIZED, QUANTIZED_NORMALS, SceneWriter},
-    checks::{check_finite, check_indices, check_repeats, measure, normal, smooth_normals},
+    checks::{
+        check_finite, check_indices, check_repeats, leave_out_far, measure, normal, smooth_normals,
+    },
     deformation,
     document::{self, AlphaMode, Document},
     error::{LoadError, called, part_name},
@@ -233,7 +235,11 @@ impl<'a> Loader<'a> {
         checkpoint.advance(step)?;
         check_indices(&self.writer.scene, &primitive).map_err(at("indices"))?;
         checkpoint.advance(step)?;
-        measure(&self.writer.scene, &mut primitive).map_err(at("POSITION"))?;
+        let far = leave_out_far(&mut self.writer, &mut primitive).map_err(at("POSITION"))?;
+        if let Some(far) = far {
+            notes.fault(|| format!("{name} POSITION: {far}"));
+        }
+        measure(&self.writer.scene, &mut primitive)?;
         checkpoint.advance(step)?;
         if primitive.is_points() {
             let at_vertex = |vertex| {

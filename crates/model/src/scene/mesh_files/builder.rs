@@ -61,7 +61,7 @@ impl Room {
 pub struct Vertex {
     /// Among the vertices of its part.
     pub key: [u32; 4],
-    /// It is finite, also in an f32.
+    /// It [is near](crate::scene::bounds::is_near).
     pub position: [f64; 3],
     pub normal: [f32; 3],
     /// Linear, in units of 1/65535.
@@ -371,7 +371,9 @@ impl Builder {
                 notes
                     .first_fault()
                     .filter(|_| has_faces)
-                    .unwrap_or_else(nothing)
+                    .map_or_else(nothing, |fault| format!(
+                        "{fault}; fetch or export it again"
+                    ))
             )));
         }
         check_size(&scene)?;

@@ -9,6 +9,7 @@ use super::{
     stream::Stream,
 };
 use crate::scene::{
+    bounds::is_near,
     gltf::{LoadError, ReadFile, Source, notes::Notes},
     memory::MemoryBudget,
     model::Scene,
@@ -98,13 +99,13 @@ pub fn load_shown(
         point.color = [r, g, b, u16::MAX];
         brightest = brightest.max(r).max(g).max(b);
         strongest = strongest.max(layout.intensity(record));
-        if point
-            .position
-            .iter()
-            .all(|value| (*value as f32).is_finite())
-        {
+        if is_near(point.position) {
             let part = builder.part(kind)?;
             builder.point(part, point)?;
+        } else {
+            findings.fault("it is left out", || {
+                "the x, y and z of a point are not three numbers below 6.9e10".into()
+            });
         }
         Ok(())
     })?;

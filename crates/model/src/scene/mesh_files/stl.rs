@@ -11,6 +11,7 @@ use super::{
 };
 use crate::legible::text_of;
 use crate::scene::{
+    bounds::is_near,
     gltf::{LoadError, ReadFile, Source, error::quoted, notes::Notes},
     memory::MemoryBudget,
     model::Scene,
@@ -132,7 +133,10 @@ impl Reader {
                         None => {
                             is_broken = true;
                             self.findings.fault("its triangle is left out", || {
-                                format!("line {at}: {} are not three numbers", quoted(rest))
+                                format!(
+                                    "line {at}: {} are not three numbers below 6.9e10",
+                                    quoted(rest)
+                                )
                             });
                         }
                     },
@@ -211,13 +215,13 @@ impl Reader {
                 (None, 1) => Some(paint([10, 5, 0])),
                 (whole, _) => whole.map(|color| (1 << 16 | 1, color)),
             };
-            if corners.as_flattened().iter().all(|value| value.is_finite()) {
+            if corners.iter().all(|corner| is_near(corner.map(f64::from))) {
                 let part = self.builder.part(self.kind(color.is_some()))?;
                 let corners = corners.map(|corner| vertex(corner, color.unwrap_or(UNPAINTED)));
                 self.builder.triangle(part, corners)?;
             } else {
                 self.findings.fault("it is left out", || {
-                    format!("triangle {triangle}: a corner has a value that is not finite")
+                    format!("triangle {triangle}: the numbers of a corner are not below 6.9e10")
                 });
             }
         }

@@ -2,7 +2,10 @@
 
 use std::str::FromStr;
 
-use crate::scene::gltf::{LoadError, PART_BYTES, Source};
+use crate::scene::{
+    bounds::MAX_PLACE,
+    gltf::{LoadError, PART_BYTES, Source},
+};
 
 /// A place in a model, up to which it was read.
 pub struct Stream<'a> {
@@ -115,14 +118,14 @@ impl<'a> Stream<'a> {
     }
 }
 
-/// A number that is finite in an f32, also one with a decimal comma.
+/// A number that a place may have, also one with a decimal comma.
 pub fn number<T: FromStr + Copy + Into<f64>>(token: &str) -> Option<T> {
     let read = |text: &str| text.parse::<T>().ok();
     let value = read(token).or_else(|| read(&token.replacen(',', ".", 1)));
-    value.filter(|&value| (value.into() as f32).is_finite())
+    value.filter(|&value| value.into().abs() < MAX_PLACE)
 }
 
-/// The first numbers of a line that are finite; none where one is missing or is no number.
+/// The first numbers of a line; none where one is missing or is no [`number`].
 pub fn numbers<'a, T: FromStr + Copy + Default + Into<f64>, const N: usize>(
     mut tokens: impl Iterator<Item = &'a str>,
 ) -> Option<[T; N]> {

@@ -59,7 +59,10 @@ pub fn load_shown(
             // The first line may name the columns, or count the points.
             if stream.line > 1 && !is_bare(&line) {
                 findings.fault("it is left out", || {
-                    format!("line {}: it does not begin with three numbers", stream.line)
+                    format!(
+                        "line {}: it does not begin with three numbers below 6.9e10",
+                        stream.line
+                    )
                 });
             }
             continue;

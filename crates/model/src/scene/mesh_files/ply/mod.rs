@@ -14,6 +14,7 @@ use super::{
 };
 use crate::{
     scene::{
+        bounds::is_near,
         gltf::{
             LoadError, ReadFile, Source,
             error::{part_name, quoted},
@@ -116,7 +117,8 @@ pub fn load(
         builder, findings, ..
     } = reader;
     findings.tell(&notes);
-    builder.finish(notes, has_faces, || {
+    let has_rows = header.elements.iter().any(|element| element.count > 0);
+    builder.finish(notes, has_rows, || {
         "it has no points and no faces".to_owned()
     })
 }
@@ -227,15 +229,17 @@ impl Reader {
         let values = |at: [Option<usize>; 3]| at.map(|at| rows.value(at) as f32);
         let is_finite = |values: &[f32]| values.iter().all(|value| value.is_finite());
         let vertices = &mut self.vertices;
-        if !is_finite(&values(columns.position)) {
-            self.findings.fault("faces with it are left out", || {
-                format!("vertex {row}: its x, y and z are not three finite numbers")
-            });
-        }
-        // What an f32 cannot hold is not finite.
         let position = columns.position.map(|at| rows.value(at));
-        let place = |v: f64| if (v as f32).is_finite() { v } else { f64::NAN };
-        vertices.positions.push(position.map(place));
+        let is_placed = is_near(position);
+        if !is_placed {
+            self.findings
+                .fault("it and faces with it are left out", || {
+                    format!("vertex {row}: its x, y and z are not three numbers below 6.9e10")
+                });
+        }
+        vertices
+            .positions
+            .push(if is_placed { position } else { [f64::NAN; 3] });
         if let Some(normal) = columns.normal {
             let normal = values(normal);
             let is_sound = is_finite(&normal);
@@ -343,8 +347,19 @@ impl Reader {
             has_texcoords: false,
             shape: Shape::Points,
         };
+        let reach = reach(&vertices.positions);
         for (at, &position) in vertices.positions.iter().enumerate() {
-            if is_loose(at) && position.iter().all(|value| value.is_finite()) {
+            if !is_loose(at) || !is_near(position) {
+                continue;
+            }
+            if size(position) > reach {
+                self.findings.fault("it is left out", || {
+                    format!(
+                        "vertex {at}: it lies far from most, and many have no place: what follows is misread where bytes are missing, so \
+                         fetch the file again"
+                    )
+                });
+            } else {
                 let mut point = Vertex::at([at as u32, NONE, NONE, 0], position);
                 if kind.has_normals {
                     point.normal = vertices.normals[at];
@@ -372,6 +387,28 @@ impl Reader {
         }
         Ok(())
     }
+}
+
+/// The largest coordinate.
+fn size(place: [f64; 3]) -> f64 {
+    place.into_iter().fold(0.0, |most, v| v.abs().max(most))
+}
+
+/// How far loose points may lie. Where a quarter of them or more has no place, numbers were read at
+/// the wrong bytes, and what lies far from the nearest quarter is none of the cloud either.
+fn reach(places: &[[f64; 3]]) -> f64 {
+    const FAR: f64 = 4.0;
+    let mut sizes: Vec<f64> = places
+        .iter()
+        .copied()
+        .filter(|&p| is_near(p))
+        .map(size)
+        .collect();
+    let quarter = places.len() / 4;
+    if quarter == 0 || sizes.len() <= quarter || sizes.len() > places.len() - quarter {
+        return f64::INFINITY;
+    }
+    FAR * *sizes.select_nth_unstable_by(quarter, f64::total_cmp).1
 }
 
 /// Where the properties of vertices are.
