@@ -178,7 +178,7 @@ fn act(lab: &mut Lab, random: &mut Random) -> String {
             format!("type {text:?}")
         }
         Deed::Search => {
-            lab.key_press_modifiers(Modifiers::COMMAND, Key::P);
+            lab.key_press_modifiers(Modifiers::COMMAND, Key::K);
             frame(lab);
             frame(lab);
             let letters: String = (0..2)
