@@ -137,7 +137,7 @@ fn axes_are_folded_and_only_those_that_decide_are_shown_with_their_reasons() {
     open(&mut lab);
     assert!(has(&lab, "accuracy.coverage") && has(&lab, "accuracy.depth"));
     assert!(
-        lab.query_by_label_contains("fixed8: exact edges between corners")
+        lab.query_by_label_contains("fixed8: triangles have exact edges between corners")
             .is_some(),
         "the option and why"
     );

@@ -220,10 +220,11 @@ fn error_text(numbers: &TierNumbers, pixels: f64) -> String {
 /// Milliseconds and error of the picture that is shown.
 fn numbers_ui(ui: &mut Ui, state: &State) {
     let time = time_line(Some(&state.picture.screen)).0;
-    let (color, error, hint) = measured::error_line(
-        state.picture.verification.verdict(),
-        state.picture.screen.requested(),
-    );
+    let verdict = state.picture.verification.verdict();
+    let (color, mut error, hint) = measured::error_line(verdict, state.picture.screen.requested());
+    if verdict.is_none() {
+        error += " (V)";
+    }
     line_ui(ui, "this picture", time, theme::text_strong());
     line_ui(ui, "", error, color).on_hover_text(hint);
 }
