@@ -51,7 +51,7 @@ pub fn shortcuts(ctx: &egui::Context, state: &State, held: &mut HeldTyping, comm
             // What is typed from here on is for the field that opens.
             ctx.memory_mut(|memory| memory.focused().map(|id| memory.surrender_focus(id)));
             held.hold_after(ctx, index, state.now_s);
-            // What a shortcut before it typed is for no field.
+            // The character of an earlier shortcut in this frame is not for that field.
             ctx.input_mut(|i| {
                 for event in &mut i.events[..index] {
                     if let Event::Text(text) = event

@@ -164,7 +164,7 @@ fn drawn(
 pub fn render_sequence(scene: &Scene, sequence: &[(View, Stack)]) -> Result<Frame, DrawError> {
     let mut last: Option<Frame> = None;
     for (at, (view, stack)) in sequence.iter().enumerate() {
-        // Of the pictures before the last one nobody sees what passes make of them.
+        // Earlier pictures of the sequence are not shown: only what their kept pass writes is read.
         let is_seen = at + 1 == sequence.len() || !stack.has_passes();
         let rows = 0..if is_seen { view.height } else { 0 };
         let earlier = last.as_ref().map(Frame::earlier);
