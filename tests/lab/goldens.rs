@@ -80,7 +80,7 @@ fn a_reload_compares_the_golden_of_the_preset() {
     badge.hover();
     lab.run_steps(60);
     assert!(
-        lab.query_all_by_label_contains("Judge > Review goldens")
+        lab.query_all_by_label_contains("Judge > Review of goldens")
             .next()
             .is_some(),
         "hovering does not explain the badge"

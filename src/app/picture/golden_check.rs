@@ -51,7 +51,7 @@ impl GoldenCheck {
             Outcome::Failed(reason) => format!("{golden}: {reason}"),
             _ => format!(
                 "After the reload the oracle drew the preset as its file has it and compared every pixel with {golden}. \
-                 Judge > Review goldens shows both and takes the new one."
+                 Judge > Review of goldens shows both and takes the new one."
             ),
         }
     }
