@@ -29,6 +29,10 @@ struct Frame {
     first_rank: u32,         // first record of triangle ranks, behind the vertices and sample setups
     deform_count: u32,       // draws that are deformed
     background_first: u32,   // first row of a gradient, a word of the color buffer; 0 without one
+    point_count: u32,        // triangles that are points
+    first_box: u32,          // word of the attributes at which the boxes of blocks of points begin, six words each
+    spare_0: u32,
+    spare_1: u32,
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;

@@ -6,7 +6,7 @@
 //@ use glue/index_bytes
 //@ use variants/draw_records
 //@ use variants/points
-//@ use variants/loads
+//@ use variants/corner_records
 
 // ---- Draws. `draws` is a uniform where the scene has one draw, else a storage buffer: the glue declares it. Its records are
 // `InstancedDraw` where many instances show few primitives; `variants/draw_records` reads what the two kinds keep in different places.
@@ -18,7 +18,7 @@ struct Draw {
     base_color: vec4f,
     origin: vec4f,               // object-space origin of packed and of eye-relative positions
     step: vec4f,                 // one step of a packed position
-    first_vertex: u32,
+    first_vertex: u32,           // where no pass projects points, those are not counted
     vertex_count: u32,
     first_triangle: u32,
     flags: u32,                  // DRAW_* bits; from bit 8 on the index of its primitive
@@ -36,8 +36,8 @@ struct Draw {
     color_format: u32,           // component count in bits 8 and up; 0 without colors
     scopes: u32,                 // bit k is set if the draw lies in scope k of the stack
     point_radius_px: f32,        // radius of the discs of its points at a distance of 1
-    spare_0: u32,
-    spare_1: u32,
+    first_point: u32,            // points, and blocks of points, of all draws before
+    first_block: u32,
 }
 
 // A draw whose primitive is described in `shapes`. Its matrices to the world lie behind the attributes.
@@ -143,8 +143,6 @@ fn vertex_at(record: vec4u) -> vec2i {
 
 // ---- Triangles.
 
-// Vertex effects move corners triangle by triangle, so every triangle has three snapped vertices that it shares with no other.
-override UNSHARES_VERTICES: bool = false;
 // Some triangle may need clipping.
 override HAS_CLIPPING: bool = false;
 
@@ -164,9 +162,8 @@ fn triangle_load(id: u32) -> Triangle {
 
 // The same where the draw is known.
 fn triangle_of(draw: u32, id: u32) -> Triangle {
-    var at = 3u * id + vec3u(0u, 1u, 2u);
-    if !UNSHARES_VERTICES { at = draws[draw].first_vertex + triangle_vertices(draw, id - draws[draw].first_triangle); }
-    return triangle_spread(Triangle(load_record(at.x), load_record(at.y), load_record(at.z), id, draw, id, 7u));
+    let corners = corner_records(draw, id);
+    return triangle_spread(Triangle(corners.a, corners.b, corners.c, id, draw, id, 7u));
 }
 
 // Is a triangle of this orientation drawn, given the flags of its draw? Clockwise on screen (area > 0) is the back of a glTF

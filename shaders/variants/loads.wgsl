@@ -1,5 +1,5 @@
 // Loads: the words that invocations gather, each at an index of its own: vertex records, and the bytes of the file.
-// Chosen for the resolve on CPU adapters with 64-bit integers: wide.
+// Chosen for the resolve on CPU adapters with 64-bit integers: wide; for scenes whose attributes are larger than a binding: split.
 //
 // The buffers, and their loads.
 //@ declare var vertex_bytes
@@ -57,4 +57,27 @@ fn loads_low(pair: u64) -> u32 {
 
 fn loads_high(pair: u64) -> u32 {
     return u32(pair >> 32u);
+}
+
+//@ variant split
+// Word by word, from a second buffer behind the words that the first one holds.
+//@ binding @group(0) @binding(2) var<storage, read> vertex_bytes: array<u32>;
+//@ binding @group(0) @binding(39) var<storage, read> vertex_bytes_rest: array<u32>;
+//@ binding @group(0) @binding(4) var<storage, read> vertices: array<vec4u>;
+
+// Words in the first buffer.
+override SPLIT_WORD: u32 = 0u;
+
+fn load_record(index: u32) -> vec4u {
+    return vertices[index];
+}
+
+fn load_word(word: u32) -> u32 {
+    if word < SPLIT_WORD { return vertex_bytes[word]; }
+    return vertex_bytes_rest[word - SPLIT_WORD];
+}
+
+fn load_words3(word: u32) -> vec3u {
+    if word + 2u < SPLIT_WORD { return vec3u(vertex_bytes[word], vertex_bytes[word + 1u], vertex_bytes[word + 2u]); }
+    return vec3u(load_word(word), load_word(word + 1u), load_word(word + 2u));
 }

@@ -14,6 +14,13 @@
 //@ declare fn point_is_turned(draw: u32, toward: f32) -> bool
 // Is it no point, or does it show at the sample of a pixel?
 //@ may declare fn point_covers(t: Triangle, pixel: vec2i) -> bool
+//
+// Where all primitives are points they are drawn from their records: the disc of one, does it show at the sample of a pixel, and the triangle
+// about it, given a triangle whose corners are all the record.
+//@ may declare struct Point
+//@ may declare fn point_from(draw: u32, record: vec4u) -> Point
+//@ may declare fn point_shows(point: Point, pixel: vec2i) -> bool
+//@ may declare fn point_triangle(point: Point, t: Triangle) -> Triangle
 
 //@ variant default
 // No primitive is points.
@@ -77,6 +84,13 @@ fn point_is_turned(draw: u32, toward: f32) -> bool {
     return triangle_is_point(draw) && toward < 0.0;
 }
 
+// A point on the screen.
+struct Point {
+    at: vec2i,
+    reach: i32, // one unit more than the radius of its disc, or the least one where that stands for the pixel
+    flags: u32, // those of its record, and VERTEX_LEFT where its disc leaves the guard band
+}
+
 // Radius of the largest disc, in pixels.
 const POINT_MAX_PX = 32u;
 
@@ -124,42 +138,51 @@ fn line_corner(end: vec4u, at: vec2i, flags: u32) -> vec4u {
     return vec4u((bitcast<vec2u>(at) << vec2u(8u)) | vec2u(flags, 0u), end.zw);
 }
 
-// The triangle is one unit farther away than its disc is wide, or touches the least one where that stands for the pixel.
+// The disc of the snapped vertex of a point.
+fn point_from(draw: u32, record: vec4u) -> Point {
+    let radius = point_radius(draw, record.w);
+    let reach = i32(select(radius + 1u, point_least(), radius < point_least()));
+    let at = vertex_at(record);
+    // What would reach out of the guard band is left out, as if it were clipped.
+    let is_out = max(abs(at.x), abs(at.y)) > 8388607 - 2 * reach;
+    return Point(at, reach, (record.x & 255u) | select(0u, VERTEX_LEFT, is_out));
+}
+
 fn triangle_spread(t: Triangle) -> Triangle {
     if draw_topology(t.draw) == TOPOLOGY_LINES { return line_spread(t); }
     if !triangle_is_point(t.draw) { return t; }
-    let record = t.a;
-    let radius = point_radius(t.draw, record.w);
-    let inner = i32(select(radius + 1u, point_least(), radius < point_least()));
-    // At least as wide as a root of 3 says, so that the sides do not cut the disc.
-    let half = ((inner * 1774) >> 10u) + 1;
-    let aside = select(half, -half, (draws[t.draw].flags & DRAW_MIRRORED) != 0u);
-    let p = vertex_at(record);
-    // What would reach out of the guard band is left out, as if it were clipped.
-    let is_out = max(abs(p.x), abs(p.y)) > 8388607 - 2 * inner;
-    let flags = (record.x & 255u) | select(0u, VERTEX_LEFT, is_out);
-    let x = vec3i(p.x - aside, p.x + aside, p.x);
-    let y = vec3i(p.y + inner, p.y + inner, p.y - 2 * inner);
-    let xs = (bitcast<vec3u>(x) << vec3u(8u)) | vec3u(flags);
-    let ys = bitcast<vec3u>(y) << vec3u(8u);
-    return Triangle(
-        vec4u(xs.x, ys.x, record.zw), vec4u(xs.y, ys.y, record.zw), vec4u(xs.z, ys.z, record.zw), t.id, t.draw, t.entry, t.outline);
+    return point_triangle(point_from(t.draw, t.a), t);
 }
 
-// Where the triangle about a point has the point, and how far its sides are away.
-fn point_of(t: Triangle) -> vec3i {
+// The triangle about a point, whose sides its reach touches.
+fn point_triangle(point: Point, t: Triangle) -> Triangle {
+    // At least as wide as a root of 3 says, so that the sides do not cut the disc.
+    let half = ((point.reach * 1774) >> 10u) + 1;
+    let aside = select(half, -half, (draws[t.draw].flags & DRAW_MIRRORED) != 0u);
+    let x = vec3i(point.at.x - aside, point.at.x + aside, point.at.x);
+    let y = vec3i(point.at.y + point.reach, point.at.y + point.reach, point.at.y - 2 * point.reach);
+    let xs = (bitcast<vec3u>(x) << vec3u(8u)) | vec3u(point.flags);
+    let ys = bitcast<vec3u>(y) << vec3u(8u);
+    let zw = t.a.zw;
+    return Triangle(vec4u(xs.x, ys.x, zw), vec4u(xs.y, ys.y, zw), vec4u(xs.z, ys.z, zw), t.id, t.draw, t.entry, t.outline);
+}
+
+// The point that a triangle lies about.
+fn point_of(t: Triangle) -> Point {
     let low = vertex_at(t.a);
     let top = vertex_at(t.c);
-    let inner = (low.y - top.y) / 3;
-    return vec3i(top.x, low.y - inner, inner);
+    let reach = (low.y - top.y) / 3;
+    return Point(vec2i(top.x, low.y - reach), reach, t.a.x & 255u);
 }
 
 fn point_covers(t: Triangle, pixel: vec2i) -> bool {
-    if !triangle_is_point(t.draw) { return true; }
-    let point = point_of(t);
-    if point.z == i32(point_least()) { return all((point.xy >> vec2u(SUBPIXEL_BITS)) == pixel); }
-    let radius = u32(point.z - 1);
-    let d = vec2u(abs(grid_sample(pixel) - point.xy));
+    return !triangle_is_point(t.draw) || point_shows(point_of(t), pixel);
+}
+
+fn point_shows(point: Point, pixel: vec2i) -> bool {
+    if point.reach == i32(point_least()) { return all((point.at >> vec2u(SUBPIXEL_BITS)) == pixel); }
+    let radius = u32(point.reach - 1);
+    let d = vec2u(abs(grid_sample(pixel) - point.at));
     if max(d.x, d.y) > radius { return false; }
     // The squares of a finer grid exceed a word.
     if SUBPIXEL_BITS > 8u {
@@ -176,5 +199,5 @@ fn triangle_orientation(t: Triangle) -> i32 {
 fn triangle_box(t: Triangle, corners: vec4i) -> vec4i {
     if !SHOWS_DISCS || !triangle_is_point(t.draw) { return corners; }
     let point = point_of(t);
-    return vec4i(point.xy - point.z, point.xy + point.z);
+    return vec4i(point.at - point.reach, point.at + point.reach);
 }

@@ -1,5 +1,6 @@
 // Triangle sources: which triangle an invocation of raster_small works on.
-// Chosen by the accuracy axis `culling`: meshlets where meshlets are culled.
+// Chosen by the accuracy axis `culling`: meshlets where meshlets are culled; and by the scene: beside_points where a pass of their own draws
+// points.
 //
 // x: the triangle's id, or one past the last triangle where there is none. y: its draw. z: an id that exists in any case.
 //@ declare fn triangle_source(invocation: u32) -> vec3u
@@ -12,6 +13,20 @@
 fn triangle_source(invocation: u32) -> vec3u {
     let existing = min(invocation, frame.triangle_count - 1u);
     return vec3u(invocation, draw_of_triangle(existing), existing);
+}
+
+//@ variant beside_points
+// An invocation for every triangle that is no point.
+//@ use lib/frame
+//@ use lib/triangle
+//@ use glue/draws
+
+fn triangle_source(invocation: u32) -> vec3u {
+    let count = frame.triangle_count - frame.point_count;
+    let existing = min(invocation, count - 1u);
+    let draw = draw_beside_points(existing);
+    let id = existing + draws[draw].first_point;
+    return vec3u(select(0xffffffffu, id, invocation < count), draw, id);
 }
 
 //@ variant meshlets

@@ -384,6 +384,7 @@ pub const GRAPHICS_CARD: Tuning = Tuning {
     wide_loads: false,
     buffered_shadow_map: false,
     glass_layers: plan::MOST_GLASS_LAYERS,
+    projects_points: true,
     specialized: true,
 };
 

@@ -1,10 +1,14 @@
 //! Promise: points and lines are drawn and judged as triangles are: with every visibility option, on
-//! parts, moved by effects, as layers, and by the effect that draws corners. Needs an adapter.
+//! parts, moved by effects, as layers, from inside, in any number of buffers, and by the effect that
+//! draws corners. Needs an adapter.
 
 use std::sync::Arc;
 
-use rasterlab::scene::{
-    Scene, memory::MemoryBudget, mesh_files::load_obj, parts::Scope, pick::pick_instance,
+use pollster::FutureExt as _;
+use rasterlab::{
+    gpu::{Gpu, Renderer},
+    preset::Preset,
+    scene::{Scene, memory::MemoryBudget, mesh_files::load_obj, parts::Scope, pick::pick_instance},
 };
 
 use crate::common::*;
@@ -78,3 +82,65 @@ fn points_and_lines_are_judged_as_triangles(reach: Reach) {
 }
 
 few_and_all!(points_and_lines_are_judged_as_triangles);
+
+/// A cloud of several blocks as a camera sees it from outside, from inside, and at the picture's edge.
+fn clouds_are_judged_from_everywhere(reach: Reach) {
+    let Some(mut renderer) = loan() else { return };
+    let scene = scene("nebula?points=6000");
+    let cameras = [
+        ([-3.0, 4.0, 8.0], [0.0, 0.0, 0.0]),
+        ([0.4, 0.1, 0.3], [1.0, 0.0, 1.0]),
+        ([0.0, 0.5, 4.0], [3.5, 0.0, 0.0]),
+    ];
+    let stacks = [
+        &["lambert"][..],
+        &["xray"],
+        &["dissolve"],
+        &["wobble"],
+        &["draw_order"],
+    ];
+    for tuning in [renderer.gpu().caps.tuning(), GRAPHICS_CARD] {
+        renderer.set_tuning(tuning);
+        for (at, (eye, target)) in cameras.into_iter().enumerate() {
+            let mut preset = Preset::of_sphere(&scene, [96, 72]);
+            let camera = preset.camera.as_mut().expect("it frames the scene");
+            (camera.eye, camera.target) = (eye.into(), target.into());
+            let view = preset.view(&scene, [96, 72]);
+            for effects in reach.of(2, stacks) {
+                for option in reach.options(&renderer) {
+                    let name = format!("camera {at}, {effects:?}, {}", option.name());
+                    let (capture, _) =
+                        renderer.exact(&scene, &view, &stack(effects), &pinned(option), &name);
+                    assert!(capture.frame.covered() > 300, "{name}");
+                }
+            }
+        }
+    }
+}
+
+/// Attributes that are more than a binding holds go on in a second one.
+#[test]
+fn attributes_of_a_large_cloud_have_two_buffers() {
+    let Some(mut gpu) = own_gpu().and_then(Arc::into_inner) else {
+        return;
+    };
+    let scene = scene("nebula?points=60000");
+    let moments = [(view(&scene, [96, 72]), stack(&["lambert"]))];
+    let request = unpinned();
+    let picture = |gpu: Gpu| {
+        let mut renderer = Renderer::new(Arc::new(gpu));
+        renderer.set_scene(&scene).block_on().expect("it fits");
+        let drawn = renderer.draw_last(&moments, &request);
+        let frame = drawn.block_on().expect("it fits");
+        assert_eq!(
+            renderer.key().expect("a picture").vertices.split.is_some(),
+            renderer.gpu().caps.max_storage_binding_bytes == 1 << 20
+        );
+        frame
+    };
+    let whole = picture(own_gpu().and_then(Arc::into_inner).expect("an adapter"));
+    gpu.caps.max_storage_binding_bytes = 1 << 20;
+    assert_same(&picture(gpu), &whole, "two buffers");
+}
+
+few_and_all!(clouds_are_judged_from_everywhere);

@@ -69,7 +69,7 @@ fn an_error_names_the_file_and_line_a_person_wrote() {
 #[test]
 fn a_pass_is_read_in_few_files() {
     for (pass, most) in [
-        (Pass::RasterSmall(RasterPhase::Depth), 13),
+        (Pass::RasterSmall(RasterPhase::Depth), 14),
         (Pass::Resolve, 17),
     ] {
         let linked = linked(&plain_key(), pass);

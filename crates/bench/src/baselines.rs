@@ -63,8 +63,9 @@ pub struct BenchRow {
     pub note: Option<String>,
 }
 
-/// Judges a picture of ours against the oracle, and hands over the oracle's own.
-pub type Judge<'a> = &'a dyn Fn(&Stack, &Capture) -> Verdict;
+/// Judges a picture of ours against the oracle, and hands over the oracle's own; none where the
+/// scene is more than the oracle can draw, whose rows have times alone.
+pub type Judge<'a> = Option<&'a dyn Fn(&Stack, &Capture) -> Verdict>;
 
 impl BenchRow {
     fn add_note(&mut self, text: &str) {
@@ -171,14 +172,10 @@ pub fn bench_stacks(
     for (name, stack) in stacks {
         let mut renderer = Renderer::new(gpu.clone());
         renderer.set_scene(scene).block_on()?;
-        let verdict = judge(
-            stack,
-            &renderer
-                .capture(&lab.view, stack, &AccuracyRequest::default())
-                .block_on()?,
-        );
+        let request = AccuracyRequest::default();
+        let verdict = lab.judged(&mut renderer, stack, &request, judge)?;
         let contender = Contender::Stacked(name.clone(), Box::new((stack.clone(), renderer)));
-        entries.push(Entry::new(contender, (&verdict.report).into()));
+        entries.push(Entry::new(contender, error_of(verdict.as_ref())));
     }
     lab.measure(
         scene,
@@ -328,25 +325,28 @@ impl Lab<'_> {
                 ));
                 continue;
             }
-            let capture = match renderer
-                .capture(&self.view, &self.preset.stack, &request_of(visibility))
-                .block_on()
-            {
+            let request = request_of(visibility);
+            let verdict = match self.judged(&mut renderer, &self.preset.stack, &request, judge) {
                 Err(error) if error.is_unsupported() => {
                     missing.push((visibility.name().into(), error.to_string()));
                     continue;
                 }
-                capture => capture?,
+                verdict => verdict?,
             };
-            let verdict = judge(&self.preset.stack, &capture);
             entries.push(Entry::new(
                 Contender::Ours(visibility, Box::new(renderer)),
-                (&verdict.report).into(),
+                error_of(verdict.as_ref()),
             ));
-            expected = Some(verdict.expected);
+            expected = verdict.map(|verdict| verdict.expected);
         }
-        let (Some(expected), Some(key)) = (expected, self.first_key(&entries)) else {
+        let Some(key) = self.first_key(&entries) else {
             return Ok((entries, missing));
+        };
+        let error_of_picture = |picture: &[[u8; 4]]| {
+            let compared = expected
+                .as_ref()
+                .map(|expected| picture_error(picture, expected));
+            compared.unwrap_or_default()
         };
         if key.generated.has_particles {
             missing.extend(["naive", "hardware"].map(|name| {
@@ -357,13 +357,20 @@ impl Lab<'_> {
             }));
             return Ok((entries, missing));
         }
-        for viewport in [Viewport::AsWritten, Viewport::Folded] {
+        let viewports: &[Viewport] = match key.samples.has_points {
+            true => {
+                missing.push(("naive".into(), "it draws triangles alone".into()));
+                &[]
+            }
+            false => &[Viewport::AsWritten, Viewport::Folded],
+        };
+        for &viewport in viewports {
             match Naive::new(self.gpu, scene, &self.view, &key, viewport).block_on() {
                 Ok(naive) => {
                     let picture = naive.picture(self.gpu).block_on()?;
                     entries.push(Entry::new(
                         Contender::Naive(viewport, Box::new(naive)),
-                        picture_error(&picture, &expected),
+                        error_of_picture(&picture),
                     ));
                 }
                 Err(error) if error.is_unsupported() => {
@@ -377,7 +384,7 @@ impl Lab<'_> {
                 let picture = hardware.picture(self.gpu).block_on()?;
                 entries.push(Entry::new(
                     Contender::Hardware(Box::new(hardware)),
-                    picture_error(&picture, &expected),
+                    error_of_picture(&picture),
                 ));
             }
             Ok(Err(why)) => missing.push(("hardware".into(), why)),
@@ -387,6 +394,24 @@ impl Lab<'_> {
             Err(error) => return Err(error),
         }
         Ok((entries, missing))
+    }
+
+    /// What the judge says of a stack; without one it is drawn alone.
+    fn judged(
+        &self,
+        renderer: &mut Renderer,
+        stack: &Stack,
+        request: &AccuracyRequest,
+        judge: Judge,
+    ) -> Result<Option<Verdict>, RenderError> {
+        let Some(judge) = judge else {
+            renderer
+                .draw_complete(&self.view, stack, request)
+                .block_on()?;
+            return Ok(None);
+        };
+        let capture = renderer.capture(&self.view, stack, request).block_on()?;
+        Ok(Some(judge(stack, &capture)))
     }
 
     fn first_key(&self, entries: &[Entry]) -> Option<crate::shader::KernelKey> {
@@ -451,6 +476,10 @@ impl Lab<'_> {
             .map(|(_, times)| times)
             .ok_or(RenderError::Lost)
     }
+}
+
+fn error_of(verdict: Option<&Verdict>) -> ErrorStats {
+    verdict.map_or_else(ErrorStats::default, |verdict| (&verdict.report).into())
 }
 
 fn request_of(visibility: Visibility) -> AccuracyRequest {

@@ -73,6 +73,7 @@ impl WorkDistribution {
             stored_uniforms: false,
             wide_loads: false,
             buffered_shadow_map: false,
+            projects_points: true,
             glass_layers: MOST_GLASS_LAYERS,
             clears_in_passes: self == Self::Card,
             specialized: true,

@@ -67,16 +67,21 @@ fn what_the_oracle_cannot_judge_is_not_measured_and_says_so() {
         if run.code == 3 {
             return eprintln!("skipped: no adapter is here");
         }
+        // Whole pictures are timed without it; a trade is nothing without its errors.
+        let code = if more.contains("axes") { 2 } else { 0 };
+        let words = [
+            "and the oracle may take 0.001;",
+            "set RASTERLAB_ORACLE_GIB",
+            "no error is measured",
+        ];
+        let wanted = &words[..if code == 2 { 2 } else { 3 }];
         assert!(
-            run.code == 2 && run.err.contains("and the oracle may take 0.001;"),
-            "{more}: {}",
+            run.code == code && wanted.iter().all(|words| run.err.contains(words)),
+            "{more}: {}: {}",
+            run.code,
             run.err
         );
-        assert!(
-            run.err.contains("set RASTERLAB_ORACLE_GIB") && !run.err.contains("panicked"),
-            "{}",
-            run.err
-        );
+        assert!(!run.err.contains("panicked"), "{}", run.err);
     }
 }
 
@@ -93,7 +98,7 @@ fn a_scene_that_the_adapter_cannot_bind_names_its_buffer_and_its_limit() {
     place.play(
         r"
         $3 render builtin:sphere?triangles=12000000 --size 64x48 -o large.png
-        ! the buffer vertex_bytes would take 144019656 bytes; this adapter binds at most 134217728; take another adapter, or fewer
+        ! the buffer index_bytes would take 144018432 bytes; this adapter binds at most 134217728; take another adapter, or fewer
         ",
     );
 }

@@ -13,7 +13,7 @@ use crate::{
 /// emission, color.
 pub const STREAMS: usize = 5;
 
-/// Components of each, all f32.
+/// Components of each, all f32, but colors that are stored as 16 bits a channel.
 pub const COMPONENTS: [u32; STREAMS] = [3, 3, 2, 2, 4];
 
 /// A vertex buffer: where it begins in `vertex_bytes`, and bytes from one vertex to the next.
@@ -21,6 +21,8 @@ pub const COMPONENTS: [u32; STREAMS] = [3, 3, 2, 2, 4];
 pub struct Stream {
     pub offset: u64,
     pub stride: u64,
+    /// It has four normalized components of 16 bits, and not floats.
+    pub is_short: bool,
 }
 
 /// An index list: its format, its bytes in `index_bytes`, and its length.
@@ -97,6 +99,7 @@ impl HardwareGeometry {
                 *stream = Stream {
                     offset,
                     stride: DEFORMED_BYTES.into(),
+                    is_short: false,
                 };
             }
         }
@@ -108,6 +111,7 @@ impl HardwareGeometry {
         Stream {
             offset: self.first_copy(),
             stride: 0,
+            is_short: false,
         }
     }
 
@@ -126,11 +130,15 @@ impl HardwareGeometry {
         Stream {
             offset,
             stride: u64::from(4 * components),
+            is_short: false,
         }
     }
 
     /// The index list of a primitive. Lists of u8, strips and fans become triangle lists of u32.
     fn indices(&mut self, scene: &Scene, primitive: &Primitive) -> Option<Indices> {
+        if primitive.is_points() && primitive.indices.is_none() {
+            return None;
+        }
         if primitive.topology == Topology::List {
             let indices = primitive.indices?;
             let format = match indices.component_type {
@@ -150,8 +158,15 @@ impl HardwareGeometry {
         }
         let first = self.first_index_copy + 4 * self.index_copies.len() as u64;
         let last = primitive.vertex_count().saturating_sub(1);
+        // All corners of a point are one.
+        let corners_of_each = if primitive.is_points() { 1 } else { 3 };
         let corners = (0..primitive.triangle_count())
-            .flat_map(|t| primitive.corners(scene, t))
+            .flat_map(|t| {
+                primitive
+                    .corners(scene, t)
+                    .into_iter()
+                    .take(corners_of_each)
+            })
             .map(|corner| corner.min(last));
         self.index_copies.extend(corners);
         let end = self.first_index_copy + 4 * self.index_copies.len() as u64;
@@ -167,13 +182,18 @@ impl HardwareGeometry {
 fn in_place(accessor: &Accessor, components: u32) -> Option<Stream> {
     // The largest that every adapter takes.
     const MAX_STRIDE: u32 = 2048;
-    let is_fetched = accessor.component_type == ComponentType::F32
-        && accessor.components == components
-        && (4 * components..=MAX_STRIDE).contains(&accessor.stride)
-        && accessor.stride.is_multiple_of(4)
-        && accessor.offset.is_multiple_of(4);
-    is_fetched.then(|| Stream {
+    // Colors of clouds have a fourth component, which they do not use.
+    let is_short = accessor.component_type == ComponentType::U16
+        && accessor.normalized
+        && (components, accessor.stride) == (4, 8);
+    let has_floats =
+        accessor.component_type == ComponentType::F32 && accessor.components == components;
+    let has_room = |stride: u32| stride == 0 || (4 * components..=MAX_STRIDE).contains(&stride);
+    let is_fetched = is_short || has_floats && has_room(accessor.stride);
+    let is_aligned = accessor.stride.is_multiple_of(4) && accessor.offset.is_multiple_of(4);
+    (is_fetched && is_aligned).then(|| Stream {
         offset: accessor.offset.into(),
         stride: accessor.stride.into(),
+        is_short,
     })
 }

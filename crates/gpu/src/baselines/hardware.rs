@@ -45,6 +45,9 @@ const PLAIN_STREAMS: usize = 2;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Recipe {
     strides: [u64; STREAMS],
+    /// Colors are stored as 16 bits a channel, and not as floats.
+    has_short_colors: bool,
+    is_points: bool,
     double_sided: bool,
     mirrored: bool,
     /// None: a base color and nothing else.
@@ -359,9 +362,12 @@ impl Recipe {
             unlit: material.unlit,
             masked: material.alpha_threshold().is_some(),
         });
-        let mut strides = geometry.of_draw(draw).streams.map(|stream| stream.stride);
+        let streams = geometry.of_draw(draw).streams;
+        let mut strides = streams.map(|stream| stream.stride);
         let recipe = Self {
             strides,
+            has_short_colors: streams[STREAMS - 1].is_short,
+            is_points: primitive.is_points(),
             double_sided: draw.double_sided,
             mirrored: draw.mirrored,
             paint,
@@ -570,6 +576,7 @@ impl Recipe {
     ) -> wgpu::RenderPipeline {
         let attribute = |slot: usize| {
             let format = match COMPONENTS[slot] {
+                4 if self.has_short_colors => wgpu::VertexFormat::Unorm16x4,
                 2 => wgpu::VertexFormat::Float32x2,
                 3 => wgpu::VertexFormat::Float32x3,
                 _ => wgpu::VertexFormat::Float32x4,
@@ -601,6 +608,10 @@ impl Recipe {
             entries,
             layout: Some(layout),
             buffers: &buffers,
+            topology: match self.is_points {
+                true => wgpu::PrimitiveTopology::PointList,
+                false => wgpu::PrimitiveTopology::TriangleList,
+            },
             cull_mode: (!self.double_sided).then_some(wgpu::Face::Back),
             front_face: if self.mirrored {
                 wgpu::FrontFace::Cw

@@ -118,7 +118,10 @@ impl FrameLayout {
             Pass::RasterPoints(_) => {
                 over(triangles.saturating_mul(key.work.invocations_per_triangle))
             }
-            Pass::RasterSmall(_) | Pass::SampleSetup(TriangleSource::Triangles) => over(triangles),
+            Pass::RasterCloud(_) => Dispatch::once(fold_groups(scene.point_blocks)),
+            Pass::RasterSmall(_) if key.draws_cloud() => over(triangles - scene.points as u32),
+            Pass::RasterSmall(_) => over(triangles),
+            Pass::SampleSetup(TriangleSource::Triangles) => over(triangles),
             Pass::SampleSetup(TriangleSource::ClippedTriangles) => {
                 Dispatch::args(offset_of!(DispatchArgs, clipped_triangles))
             }

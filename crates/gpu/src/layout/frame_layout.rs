@@ -40,10 +40,16 @@ pub enum Target {
 /// What is drawn, in numbers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SceneCounts {
-    /// Vertices of all draws.
+    /// Vertices of all draws of which a pass writes records.
     pub vertices: u64,
     /// Triangles of all draws.
     pub triangles: u64,
+    /// Of those, points.
+    pub points: u64,
+    /// Blocks of points.
+    pub point_blocks: u32,
+    /// Word of the attributes at which the boxes of these begin.
+    pub first_box: u32,
     pub draws: u64,
     /// Vertices in all draws that joints or morph targets can deform; the dispatch size of
     /// `deform`.
@@ -725,6 +731,8 @@ impl FrameLayout {
         FrameUniform {
             vertex_count: self.first_record(Region::SampleSetups),
             triangle_count: self.scene.triangles as u32,
+            point_count: self.scene.points as u32,
+            first_box: self.scene.first_box,
             draw_count: self.scene.draws as u32,
             clip_capacity: room.clip,
             clipped_triangle_capacity: room.clipped_triangles,
@@ -754,9 +762,11 @@ impl FrameLayout {
 }
 
 /// Projected records: one per vertex of each draw, or three per triangle where effects move
-/// triangles apart.
+/// triangles apart; none of points that are projected as they are drawn.
 pub(super) fn vertex_records(key: &KernelKey, scene: &SceneCounts) -> u64 {
-    if key.unshares_vertices() {
+    if key.samples.only_points && key.work.projects_points {
+        0
+    } else if key.unshares_vertices() {
         3 * scene.triangles
     } else {
         scene.vertices

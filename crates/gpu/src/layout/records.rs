@@ -40,6 +40,10 @@ gpu_record! {
         pub first_rank: u32,
         pub deform_count: u32,
         pub background_first: u32,
+        pub point_count: u32,
+        pub first_box: u32,
+        pub spare_0: u32,
+        pub spare_1: u32,
     }
 }
 
@@ -70,8 +74,8 @@ gpu_record! {
         pub color_format: u32,
         pub scopes: u32,
         pub point_radius_px: f32,
-        pub spare_0: u32,
-        pub spare_1: u32,
+        pub first_point: u32,
+        pub first_block: u32,
     }
 }
 

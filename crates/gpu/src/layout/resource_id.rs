@@ -62,6 +62,7 @@ buffers! {
     Effects = "effects", UNIFORM.union(STORAGE), Nothing, "parameters of the stack";
     PunctualLights = "punctual_lights", UNIFORM, Nothing, "lights that come with the scene";
     VertexBytes = "vertex_bytes", STORAGE.union(BufferUsages::VERTEX), Nothing, "attributes as the file has them";
+    VertexBytesRest = "vertex_bytes_rest", STORAGE, Nothing, "attributes that are more than the adapter binds at once";
     IndexBytes = "index_bytes", STORAGE.union(BufferUsages::INDEX), Nothing, "index lists as the file has them";
     Deforms = "deforms", STORAGE, Nothing, "byte offsets of every mesh that joints or morph targets deform";
     Joints = "joints", STORAGE, Nothing, "joint transforms of every skin: three matrix rows each, or a dual quaternion and a scale";

@@ -47,6 +47,7 @@ pub async fn triangle_ids(
         entries: ["ids_vertex", "ids_fragment"],
         layout: None,
         buffers: &[Some(corner)],
+        topology: wgpu::PrimitiveTopology::TriangleList,
         cull_mode: None,
         front_face: wgpu::FrontFace::Ccw,
         format,

@@ -64,6 +64,9 @@ pub fn pass_purpose(pass: Pass) -> &'static str {
         Pass::OrderRanks => "tells which share of all samples comes before each triangle",
         Pass::OrderCut => "finds the pixel at which the drawing stops",
         Pass::RasterPoints(_) => "draws the corners of every shown triangle as discs",
+        Pass::RasterCloud(_) => {
+            "projects and draws every small point, and sorts out the larger ones"
+        }
         Pass::Args => "turns queue demand into dispatch sizes",
         Pass::Clip => "cuts triangles at the near plane and the guard band",
         Pass::TileLarge => "finds the tiles of each large triangle",

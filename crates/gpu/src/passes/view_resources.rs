@@ -344,8 +344,11 @@ impl ViewResources {
         };
         // A shadow map has no picture whose tiles could be listed.
         let listed_tiles = device.tuning.listed_tiles && self.target != Target::ShadowMap;
+        // The judge asks for the record of every point.
+        let projects_points = device.tuning.projects_points && self.target != Target::Judge;
         let tuning = Tuning {
             listed_tiles,
+            projects_points,
             ..device.tuning
         };
         let made = self.planner.made();
@@ -378,6 +381,7 @@ impl ViewResources {
             is_instanced: key.vertices.is_instanced,
             // A light sees the instances of the picture where that has them.
             places_instances: self.target != Target::ShadowMap,
+            projects_points: key.work.projects_points,
             deforms_offscreen: !key.culls() || request.stack.light().is_some(),
             scopes: request.stack.scopes(),
             glass: request.glass(),

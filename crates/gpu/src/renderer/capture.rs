@@ -59,6 +59,26 @@ impl Capture {
 }
 
 impl Renderer {
+    /// The last of `moments`, drawn after those before it, as it is shown. A judge asks for more:
+    /// [`Self::capture`].
+    ///
+    /// # Panics
+    /// Without a moment.
+    pub async fn draw_last(
+        &mut self,
+        moments: &[(View, Stack)],
+        accuracy: &AccuracyRequest,
+    ) -> Result<Frame, RenderError> {
+        let (view, _) = moments.last().expect("a picture shows a moment");
+        let mut counters = Counters::default();
+        self.clear_history();
+        for (view, stack) in moments {
+            counters = self.draw_complete(view, stack, accuracy).await?;
+        }
+        let (frame, shown) = self.read_picture(view, counters).await?;
+        Ok(shown.unwrap_or(frame))
+    }
+
     /// The last of `moments`, drawn after those before it, as [`Self::capture`] does.
     ///
     /// # Panics
@@ -111,24 +131,18 @@ impl Renderer {
         accuracy: &AccuracyRequest,
     ) -> Result<Option<Capture>, RenderError> {
         let mut counters = self.draw_complete(view, stack, accuracy).await?;
-        let shown = [view.width, view.height];
         if view.pixels() == 0 {
-            let frame = Frame {
-                width: view.width,
-                height: view.height,
-                ..Frame::default()
-            };
-            let geometry = Geometry::default();
+            let (frame, shown) = self.read_picture(view, counters).await?;
             return Ok(Some(Capture {
                 frame,
-                geometry,
+                geometry: Geometry::default(),
                 layers: Some(Vec::new()),
                 previous: None,
-                shown: None,
+                shown,
             }));
         }
         let key = self.picture.frame()?.plan.key.clone();
-        let mut judge = if key.culls() {
+        let mut judge = if key.culls() || key.work.projects_points {
             Some(
                 self.redraw_unculled(view, stack, accuracy, &mut counters)
                     .await?,
@@ -148,15 +162,10 @@ impl Renderer {
             view: judge.as_ref().unwrap_or(&self.picture),
             ..picture
         };
-        let [width, height] = self.picture.frame()?.layout.size;
-        let frame = read_frame(&picture, &key, [width, height], counters).await?;
+        let (frame, shown) = self.read_picture(view, counters).await?;
         let previous = if key.reads_previous() {
-            Some(picture.picture(BufferId::Previous, [width, height]).await?)
-        } else {
-            None
-        };
-        let scaled = if key.is_scaled() {
-            Some(picture.picture(BufferId::ScaledColor, shown).await?)
+            let size = [frame.width, frame.height];
+            Some(picture.picture(BufferId::Previous, size).await?)
         } else {
             None
         };
@@ -190,7 +199,6 @@ impl Renderer {
                 return Ok(None);
             }
         }
-        let shown = scaled.map(|picture| frame.shown(shown, picture));
         Ok(Some(Capture {
             frame,
             geometry,
@@ -198,6 +206,40 @@ impl Renderer {
             previous,
             shown,
         }))
+    }
+
+    /// The picture that was drawn last, of this view, and that at the size that is shown, where it was
+    /// drawn at another.
+    async fn read_picture(
+        &self,
+        view: &View,
+        counters: Counters,
+    ) -> Result<(Frame, Option<Frame>), RenderError> {
+        let [width, height] = [view.width, view.height];
+        if view.pixels() == 0 {
+            let frame = Frame {
+                width,
+                height,
+                ..Frame::default()
+            };
+            return Ok((frame, None));
+        }
+        let prepared = self.picture.frame()?;
+        let picture = Readback {
+            gpu: &self.device.gpu,
+            scene: self.scene.as_ref().ok_or(RenderError::NoScene)?,
+            view: &self.picture,
+        };
+        let key = &prepared.plan.key;
+        let frame = read_frame(&picture, key, prepared.layout.size, counters).await?;
+        if !key.is_scaled() {
+            return Ok((frame, None));
+        }
+        let scaled = picture
+            .picture(BufferId::ScaledColor, [width, height])
+            .await?;
+        let shown = frame.shown([width, height], scaled);
+        Ok((frame, Some(shown)))
     }
 
     /// Draws a culled picture once more as another view, for the judge, who asks for the vertices,

@@ -20,7 +20,7 @@ impl Renderer {
         accuracy: &AccuracyRequest,
     ) -> Result<Frame, RenderError> {
         let scale = accuracy.scale();
-        match self.capture_last(moments, accuracy).await {
+        match self.draw_last(moments, accuracy).await {
             Err(RenderError::Scaled { .. }) if scale > RenderScale::Full => {
                 let accuracy = AccuracyRequest {
                     pins: accuracy.pins.with(RenderScale::Full),
@@ -28,7 +28,7 @@ impl Renderer {
                 };
                 self.mean(moments, &accuracy, scale.factor() as u32).await
             }
-            drawn => Ok(drawn?.into_shown()),
+            drawn => drawn,
         }
     }
 
@@ -45,7 +45,7 @@ impl Renderer {
                 .iter()
                 .map(|(view, stack)| (view.shifted(shift), stack.clone()))
                 .collect();
-            mean.add(self.capture_last(&moved, accuracy).await?.into_shown());
+            mean.add(self.draw_last(&moved, accuracy).await?);
         }
         Ok(mean.frame().expect("a side has at least one picture"))
     }

@@ -64,7 +64,7 @@ pub fn cleared_depth(view: &wgpu::TextureView) -> wgpu::RenderPassDepthStencilAt
     }
 }
 
-/// An ordinary render pipeline over triangle lists.
+/// An ordinary render pipeline over lists of triangles or points.
 pub struct HardwarePipeline<'a> {
     pub label: &'a str,
     pub module: &'a wgpu::ShaderModule,
@@ -73,6 +73,7 @@ pub struct HardwarePipeline<'a> {
     /// None: as the shaders have it.
     pub layout: Option<&'a wgpu::PipelineLayout>,
     pub buffers: &'a [Option<wgpu::VertexBufferLayout<'a>>],
+    pub topology: wgpu::PrimitiveTopology,
     pub cull_mode: Option<wgpu::Face>,
     /// The winding of front faces, y up.
     pub front_face: wgpu::FrontFace,
@@ -104,6 +105,7 @@ impl HardwarePipeline<'_> {
                     buffers: self.buffers,
                 },
                 primitive: wgpu::PrimitiveState {
+                    topology: self.topology,
                     cull_mode: self.cull_mode,
                     front_face: self.front_face,
                     ..Default::default()

@@ -1,7 +1,8 @@
 //! The layout of `vertex_bytes`: attributes as the file has them, then vertices that joints and
-//! morph targets deform, then packed positions, then the matrices of instances.
+//! morph targets deform, then packed positions, then the matrices of instances, then the boxes of
+//! blocks of points.
 
-use super::packing;
+use super::{packing, point_boxes};
 use crate::scene::{Accessor, Scene};
 
 /// Bytes of a deformed vertex: position and normal, three floats each.
@@ -17,6 +18,7 @@ pub struct AttributeLayout {
     deformed: u64,
     packed: u64,
     placements: u64,
+    boxes: u64,
     /// Bits per axis of packed positions, where there are any.
     pub packed_bits: Option<u32>,
 }
@@ -33,13 +35,19 @@ impl AttributeLayout {
             } else {
                 0
             },
+            boxes: point_boxes::bytes_of(scene),
             packed_bits,
         }
     }
 
     /// Bytes in all.
     pub const fn bytes(&self) -> u64 {
-        self.first_placement() + self.placements
+        self.first_box() + self.boxes
+    }
+
+    /// First byte of the boxes of blocks of points.
+    pub const fn first_box(&self) -> u64 {
+        (self.first_placement() + self.placements).next_multiple_of(4)
     }
 
     /// First byte of a vertex that may be deformed, by its index among all of those.

@@ -16,6 +16,7 @@ use crate::{
         draw::{Draw, MANY_DRAWS},
         model::MOST_SHAPES,
     },
+    shader::key::POINT_BLOCK,
 };
 
 /// See the module's first lines.
@@ -60,6 +61,31 @@ impl DrawRecords {
         }
     }
 
+    /// Numbers points and their blocks, and returns how many there are. With `projects_points` vertex
+    /// records are those of other draws alone.
+    pub fn number_points(
+        &mut self,
+        scene: &Scene,
+        draws: &[Draw],
+        projects_points: bool,
+    ) -> PointCounts {
+        let mut before = PointCounts::default();
+        let Self::Whole(records) = self else {
+            return before;
+        };
+        for (record, draw) in records.iter_mut().zip(draws) {
+            let primitive = &scene.primitives[draw.primitive];
+            (record.first_point, record.first_block) = (before.points, before.blocks);
+            record.first_vertex -= before.unwritten;
+            if primitive.is_points() {
+                before.points += primitive.triangle_count();
+                before.blocks += primitive.triangle_count().div_ceil(POINT_BLOCK);
+                before.unwritten += u32::from(projects_points) * primitive.vertex_count();
+            }
+        }
+        before
+    }
+
     /// The bytes of the buffer of draws.
     pub fn draws(&self) -> &[u8] {
         match self {
@@ -75,6 +101,14 @@ impl DrawRecords {
             Self::Instanced { shapes, .. } => bytemuck::cast_slice(shapes),
         }
     }
+}
+
+/// Points of all draws, their blocks, and vertices of which no pass writes a record.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct PointCounts {
+    pub points: u32,
+    pub blocks: u32,
+    pub unwritten: u32,
 }
 
 /// The matrices of an instance, as `shaders/variants/draw_records.wgsl` reads them.
@@ -212,8 +246,8 @@ impl DrawRecord {
             color_format: color.map_or(0, format_word),
             scopes: draw.scopes,
             point_radius_px: draw.point_radius_px,
-            spare_0: 0,
-            spare_1: 0,
+            first_point: 0,
+            first_block: 0,
         }
     }
 }

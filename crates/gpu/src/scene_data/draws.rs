@@ -35,6 +35,8 @@ pub struct DrawInputs {
     pub is_instanced: bool,
     /// The view writes matrices of instances behind the attributes, where these have room for them.
     pub places_instances: bool,
+    /// No pass writes the records of points.
+    pub projects_points: bool,
     /// Draws outside the picture are deformed too.
     pub deforms_offscreen: bool,
     /// Scopes of the stack.
@@ -78,7 +80,7 @@ impl DrawData {
                 record.packed(packed, attributes.first_packed() as u32)
             })
         };
-        let records = if inputs.is_instanced {
+        let mut records = if inputs.is_instanced {
             DrawRecords::instanced(draws, attributes, record)
         } else {
             DrawRecords::whole(draws, record)
@@ -105,9 +107,13 @@ impl DrawData {
             meshlets.instances(scene, draws, &inputs.view)
         });
         let [vertices, triangles] = totals(scene, draws);
+        let points = records.number_points(scene, draws, inputs.projects_points);
         let counts = SceneCounts {
-            vertices,
+            vertices: vertices - u64::from(points.unwritten),
             triangles,
+            points: points.points.into(),
+            point_blocks: points.blocks,
+            first_box: (inputs.attributes.first_box() / 4) as u32,
             draws: draws.len() as u64,
             deformable: deformed.last().map_or(0, |range| range.end),
             deforms: deforms.records.len() as u64,

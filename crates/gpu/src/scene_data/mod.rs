@@ -1,6 +1,7 @@
 //! A scene on a device: its attributes, draws, meshlets and materials.
 
 mod packing;
+mod point_boxes;
 
 pub mod attributes;
 pub mod deforms;

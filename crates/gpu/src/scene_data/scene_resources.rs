@@ -10,6 +10,7 @@ use super::{
     material_atlas::{self, AtlasContents},
     meshlets::MeshletBuffers,
     packing::{PackedBox, Packing},
+    point_boxes,
 };
 use crate::{
     device::{Gpu, error::RenderError},
@@ -69,15 +70,23 @@ impl SceneResources {
             .caps
             .max_storage_binding_bytes
             .min(gpu.caps.max_buffer_bytes);
+        // Points are projected as they are drawn.
+        let projected: u64 = (scene.instances.iter())
+            .map(|instance| &scene.primitives[instance.primitive])
+            .filter(|primitive| !primitive.is_points())
+            .map(|primitive| u64::from(primitive.vertex_count()))
+            .sum();
+        let attributes = AttributeLayout::new(scene, None).bytes();
+        let parts = match gpu.caps.attribute_split(scene.constant_attribute_bytes()) {
+            Some(_) => 2,
+            None => 1,
+        };
         let sizes = [
-            (
-                BufferId::VertexBytes,
-                AttributeLayout::new(scene, None).bytes(),
-            ),
+            (BufferId::VertexBytes, attributes.div_ceil(parts)),
             (BufferId::IndexBytes, scene.index_bytes.len() as u64),
             (
                 BufferId::Vertices,
-                size_of::<VertexRecord>() as u64 * scene.vertex_count(),
+                size_of::<VertexRecord>() as u64 * projected,
             ),
         ];
         match sizes.into_iter().find(|(_, bytes)| *bytes > limit) {
@@ -120,9 +129,36 @@ impl SceneResources {
         gpu: &Gpu,
         placements: &[Placement],
     ) -> Result<(), RenderError> {
-        let (id, first) = (BufferId::VertexBytes, self.attributes.first_placement());
-        let bytes = bytemuck::cast_slice(placements);
-        self.buffers.write_at(gpu, id, first, bytes).await
+        let first = self.attributes.first_placement();
+        self.write_attributes(gpu, first, bytemuck::cast_slice(placements))
+            .await
+    }
+
+    /// Writes attributes, which begin at a byte of all.
+    async fn write_attributes(
+        &self,
+        gpu: &Gpu,
+        first: u64,
+        bytes: &[u8],
+    ) -> Result<(), RenderError> {
+        let split = self.split(gpu).unwrap_or(u64::MAX);
+        let here = split.saturating_sub(first).min(bytes.len() as u64) as usize;
+        let (here, rest) = bytes.split_at(here);
+        let (id, rest_id) = (BufferId::VertexBytes, BufferId::VertexBytesRest);
+        if !here.is_empty() {
+            self.buffers.write_at(gpu, id, first, here).await?;
+        }
+        if rest.is_empty() {
+            return Ok(());
+        }
+        let first = first.saturating_sub(split);
+        self.buffers.write_at(gpu, rest_id, first, rest).await
+    }
+
+    /// The byte at which attributes go on in a second buffer, if they do.
+    fn split(&self, gpu: &Gpu) -> Option<u64> {
+        let word = (gpu.caps).attribute_split(self.scene.constant_attribute_bytes());
+        word.map(|word| 4 * u64::from(word))
     }
 
     /// The meshlets of the scene, which are found at the first call.
@@ -211,8 +247,7 @@ impl SceneResources {
     }
 
     async fn upload(&mut self, gpu: &Gpu) -> Result<(), RenderError> {
-        self.buffers
-            .keep(|id| !matches!(id, BufferId::VertexBytes | BufferId::IndexBytes));
+        self.buffers.keep(|id| id != BufferId::IndexBytes);
         (self.material_atlas, self.meshlets) = (None, None);
         self.upload_attributes(gpu, None).await?;
         if !self.scene.index_bytes.is_empty() {
@@ -235,27 +270,30 @@ impl SceneResources {
             .unwrap_or_default();
         // Until all is there, nothing is.
         self.attributes = AttributeLayout::default();
-        self.buffers.keep(|id| id != BufferId::VertexBytes);
+        self.buffers
+            .keep(|id| !matches!(id, BufferId::VertexBytes | BufferId::VertexBytesRest));
         let attributes = AttributeLayout::new(&self.scene, packed_bits);
+        let (bytes, purpose) = (attributes.bytes(), attributes.purpose());
+        let split = self.split(gpu).unwrap_or(u64::MAX);
         self.buffers
-            .ensure_for(
-                gpu,
-                BufferId::VertexBytes,
-                attributes.bytes(),
-                attributes.purpose(),
-            )
+            .ensure_for(gpu, BufferId::VertexBytes, bytes.min(split), purpose)
             .await?;
-        self.buffers
-            .write_at(gpu, BufferId::VertexBytes, 0, &self.scene.vertex_bytes)
-            .await?;
-        self.buffers
-            .write_at(
-                gpu,
-                BufferId::VertexBytes,
-                attributes.first_packed(),
-                bytemuck::cast_slice(&packing.words),
-            )
-            .await?;
+        if split != u64::MAX {
+            let rest = bytes.saturating_sub(split);
+            (self.buffers)
+                .ensure(gpu, BufferId::VertexBytesRest, rest)
+                .await?;
+        }
+        let packed: &[u8] = bytemuck::cast_slice(&packing.words);
+        let boxes = point_boxes::boxes_of(&self.scene);
+        let parts = [
+            (0, self.scene.vertex_bytes.as_slice()),
+            (attributes.first_packed(), packed),
+            (attributes.first_box(), bytemuck::cast_slice(&boxes)),
+        ];
+        for (first, bytes) in parts {
+            self.write_attributes(gpu, first, bytes).await?;
+        }
         (self.attributes, self.packed_boxes) = (attributes, packing.boxes);
         Ok(())
     }

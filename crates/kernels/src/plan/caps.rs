@@ -48,6 +48,15 @@ impl Caps {
         }
     }
 
+    /// At which word the attributes of a scene are divided between two bindings, where so many bytes
+    /// are more than one holds.
+    pub fn attribute_split(&self, bytes: u64) -> Option<u32> {
+        let most = self.max_storage_binding_bytes.min(self.max_buffer_bytes);
+        // Room for the boxes of blocks of points.
+        let is_large = bytes + bytes / 32 > most;
+        is_large.then_some((most.min(u64::from(u32::MAX)) / 16 * 4) as u32)
+    }
+
     /// How work is divided on this adapter. On a GPU a whole workgroup takes over early, since one
     /// slow invocation delays its neighbors; a CPU adapter runs invocations one after another,
     /// executes both sides of every branch, and gains nothing by it.
@@ -74,6 +83,7 @@ impl Caps {
             wide_loads: self.software && self.int64_atomics,
             buffered_shadow_map: self.max_storage_buffers > MANY_STORAGE_BUFFERS,
             glass_layers: MOST_GLASS_LAYERS,
+            projects_points: true,
             specialized: true,
         }
     }
@@ -136,6 +146,9 @@ pub struct Tuning {
     /// Layers of glass that are in memory at a time, at least 1 and as far as there is memory: a
     /// picture that has more is drawn in bands of pixels.
     pub glass_layers: u32,
+    /// Points are projected where they are drawn and shaded, where a scene has nothing else; else a
+    /// pass writes the record of each, which the judge reads.
+    pub projects_points: bool,
     /// Omit what the scene does not need; else keep every path and every branch.
     pub specialized: bool,
 }

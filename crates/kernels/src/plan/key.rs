@@ -19,6 +19,12 @@ use crate::{
     },
 };
 
+/// Less than the radius of the least disc of a point, which stands for its pixel.
+const LEAST_DISC_PX: f64 = 0.69;
+
+/// Bytes of the record of a projected vertex.
+const RECORD_BYTES: u64 = 16;
+
 /// The key of a kernel with these options and layers.
 pub(super) fn key_of(
     options: AccuracyOptions,
@@ -31,14 +37,21 @@ pub(super) fn key_of(
     let has_mask = needs.masked && stack.shape == Shape::Triangles;
     let loops = loops::of_a_sample(has_mask, layers, &options);
     let paired_sums = adds_pairs(&options, layers, caps);
-    let clears_in_passes = tuning.clears_in_passes && options.culling == Culling::None;
+    let is_culled = options.culling != Culling::None;
+    let is_cloud = needs.only_points || needs.clouds && !stack.moves_triangles();
+    // The judge reads what a light's pass writes, where that has room.
+    let has_room = needs.vertices * RECORD_BYTES <= caps.max_storage_binding_bytes;
+    let is_asked_for = needs.is_light && has_room;
+    let projects_points = tuning.projects_points && is_cloud && !is_culled && !is_asked_for;
+    // The pass that clears is the one that projects.
+    let clears_in_passes = tuning.clears_in_passes && !is_culled && !projects_points;
     let has_transmission = layers == Some(Layers::Glass) && needs.transmitting > 0;
     let has_finish = stack.reads_finish() || has_transmission;
     let has_finish_maps = needs.finish_maps > 0 && has_finish;
     let has_normal_maps = needs.normal_maps > 0 && stack.reads_normals();
     KernelKey {
         options,
-        vertices: vertex_inputs(needs, &options),
+        vertices: vertex_inputs(needs, &options, caps),
         generated: GeneratedVertices {
             has_joints: needs.skinning.is_some(),
             has_morph_targets: needs.morph_targets,
@@ -49,6 +62,7 @@ pub(super) fn key_of(
             draw_order: stack.draw_order,
             has_mask,
             has_points: needs.points,
+            only_points: needs.only_points,
         },
         paths: raster_paths(&options, needs, tuning, loops::samples(caps, loops)),
         work: WorkSharing {
@@ -61,12 +75,13 @@ pub(super) fn key_of(
             ),
             listed_tiles: tuning.listed_tiles,
             early_load: stack.shape == Shape::Points
+                || projects_points
                 || tuning.early_load && options.visibility == Visibility::Split32,
             exchanges_maximum: tuning.exchanges_maximum,
-            queue_groups: if options.culling == Culling::None {
-                tuning.queue_groups.min(65_535)
-            } else {
+            queue_groups: if is_culled {
                 0
+            } else {
+                tuning.queue_groups.min(65_535)
             },
             dot_groups: tuning.dot_groups,
             interleaves_triangles: tuning.interleaves_triangles,
@@ -74,6 +89,7 @@ pub(super) fn key_of(
             stored_uniforms: tuning.stored_uniforms,
             wide_loads: tuning.wide_loads,
             buffered_shadow_map: tuning.buffered_shadow_map && stack.reads_light(),
+            projects_points,
             deepest_glass: if caps.software {
                 loops::DEEPEST_GLASS
             } else {
@@ -146,7 +162,7 @@ fn has_one64_sums(options: &AccuracyOptions, layers: Option<Layers>, stack: &Sta
     fits && options.xray_sums == XraySums::Four32 && stack.xray.is_some_and(|xray| xray.unit() == 1)
 }
 
-fn vertex_inputs(needs: &Needs, options: &AccuracyOptions) -> VertexInputs {
+fn vertex_inputs(needs: &Needs, options: &AccuracyOptions, caps: &Caps) -> VertexInputs {
     let format = |is_f32: bool| {
         if is_f32 {
             AttributeFormat::F32
@@ -169,6 +185,7 @@ fn vertex_inputs(needs: &Needs, options: &AccuracyOptions) -> VertexInputs {
         is_instanced: needs.instanced
             && needs.draws > 1
             && options.position_format != PositionFormat::Relative,
+        split: caps.attribute_split(needs.attribute_bytes),
     }
 }
 
@@ -192,6 +209,7 @@ fn raster_paths(
             || widest > f64::from(max_small_side)
             || widest * widest > f64::from(max_small_samples),
         has_large: needs.largest_px >= large_px(options),
+        only_pixels: needs.largest_disc_px < LEAST_DISC_PX,
         max_small_samples,
         max_small_side,
     }

@@ -115,6 +115,14 @@ impl StackTraits {
             .find(|effect| effect.hooks.vertex.is_some())
     }
 
+    /// Does an effect move corners by their triangle?
+    pub fn moves_triangles(&self) -> bool {
+        let hooks = |effect: &Arc<Effect>| Some(effect.hooks.vertex.as_ref()?.needs_triangle);
+        self.effects
+            .iter()
+            .any(|effect| hooks(effect) == Some(true))
+    }
+
     /// Does an effect finish pixels?
     pub fn finishes_pixels(&self) -> bool {
         self.effects

@@ -92,7 +92,8 @@ impl KernelKey {
         }
         // Sample setups are computed for all triangles, which takes all vertices.
         let projects_all = !self.culls() || self.sample_setups() > 0;
-        if projects_all {
+        let writes_records = !(self.work.projects_points && self.samples.only_points);
+        if projects_all && writes_records {
             passes.push(Pass::Project);
         }
         if self.sample_setups() > 0 {
@@ -148,6 +149,10 @@ impl KernelKey {
     fn raster_passes(&self, phase: RasterPhase, is_first: bool) -> Vec<Pass> {
         let mut passes = Vec::new();
         match self.samples.shape {
+            Shape::Triangles if self.draws_cloud() => {
+                passes.push(Pass::RasterCloud(phase));
+                passes.extend((!self.samples.only_points).then_some(Pass::RasterSmall(phase)));
+            }
             Shape::Triangles | Shape::Boxes if self.draws_all_at_once() && !is_first => {
                 passes.push(Pass::RasterAll(phase))
             }

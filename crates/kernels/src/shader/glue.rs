@@ -289,9 +289,15 @@ pub const BINDINGS: [&str; 6] = [
 ];
 
 /// Functions that come with the buffer of draws.
-pub const DRAW_FUNCTIONS: [&str; 2] = ["draw_of_triangle", "draw_of_vertex"];
+pub const DRAW_FUNCTIONS: [&str; 4] = [
+    "draw_of_triangle",
+    "draw_of_vertex",
+    "draw_of_block",
+    "draw_beside_points",
+];
 
-/// The draw that a triangle or a vertex belongs to. A scene of one draw has no search in its text:
+/// The draw that a triangle or a vertex belongs to, or where points are projected as they are drawn,
+/// a block of them and one of all other triangles. A scene of one draw has no search in its text:
 /// a loop that an override switches off still costs 6 % of a frame of ten million triangles (NVIDIA
 /// H200, 2026-11-22).
 pub fn draw_functions(key: &KernelKey) -> String {
@@ -303,15 +309,25 @@ pub fn draw_functions(key: &KernelKey) -> String {
             "fn {name}(id: u32) -> u32 {{
     var search = search_begin(frame.draw_count);
     for (var i = 0u; i < SEARCH_STEPS && search_is_open(search); i += 1u) {{
-        search = search_narrow(search, draws[search_middle(search)].{first} <= id);
+        search = search_narrow(search, {first} <= id);
     }}
     return search.low;
 }}
 "
         )
     };
-    let [of_triangle, of_vertex] = DRAW_FUNCTIONS;
-    function(of_triangle, "first_triangle") + &function(of_vertex, "first_vertex")
+    let first = |member: &str| format!("draws[search_middle(search)].{member}");
+    let firsts = [
+        first("first_triangle"),
+        first("first_vertex"),
+        first("first_block"),
+        first("first_triangle") + " - " + &first("first_point"),
+    ];
+    let known = if key.work.projects_points { 4 } else { 2 };
+    let functions = DRAW_FUNCTIONS.iter().zip(&firsts).take(known);
+    functions
+        .map(|(name, first)| function(name, first))
+        .collect()
 }
 
 /// The declaration of a buffer whose form depends on the key. Where the key has no such buffer, a

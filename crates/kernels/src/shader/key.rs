@@ -76,6 +76,8 @@ pub struct VertexInputs {
     pub is_single_draw: bool,
     /// Draws share what they say of their primitives.
     pub is_instanced: bool,
+    /// The word at which attributes go on in a second buffer, where one binding does not hold them.
+    pub split: Option<u32>,
 }
 
 /// Which vertices compute passes write before the frame is projected.
@@ -98,8 +100,10 @@ pub struct SampleRules {
     pub draw_order: Option<draw_order::Mode>,
     /// The alpha of a texture discards samples.
     pub has_mask: bool,
-    /// Some primitives are points.
+    /// Some primitives are points or lines.
     pub has_points: bool,
+    /// All primitives are points.
+    pub only_points: bool,
 }
 
 /// Which raster paths the sizes of the triangles call for.
@@ -111,6 +115,8 @@ pub struct RasterPaths {
     pub has_medium: bool,
     /// Some triangle may exceed 128 px.
     pub has_large: bool,
+    /// No disc of a point is larger than a pixel.
+    pub only_pixels: bool,
     /// Most candidate samples of a triangle that one invocation walks.
     pub max_small_samples: u32,
     /// Most pixels per side of such a triangle's box.
@@ -151,6 +157,8 @@ pub struct WorkSharing {
     /// A shadow map is read from the buffer that the light's passes wrote, not from a texture; see
     /// `plan::Tuning`.
     pub buffered_shadow_map: bool,
+    /// Points are projected where they are drawn and shaded, and no pass writes their records.
+    pub projects_points: bool,
     /// Most layers of glass of a pixel that are sorted.
     pub deepest_glass: u32,
     /// The sums of an x-ray are added two words at a time, as 64-bit integers.
@@ -238,6 +246,9 @@ pub struct EffectList {
     pub dots: Option<LineSource>,
 }
 
+/// Points in a block, which a workgroup draws.
+pub const POINT_BLOCK: u32 = 1024;
+
 /// Layers of equal weight that x-ray sums in one 64-bit integer hold.
 pub const ONE64_LAYERS: u32 = 127;
 
@@ -291,6 +302,7 @@ impl KernelKey {
                 only_triangle_lists: false,
                 is_single_draw: false,
                 is_instanced: false,
+                split: None,
             },
             generated: GeneratedVertices {
                 has_joints: true,
@@ -302,11 +314,13 @@ impl KernelKey {
                 draw_order: None,
                 has_mask: false,
                 has_points: false,
+                only_points: false,
             },
             paths: RasterPaths {
                 has_clipping: true,
                 has_medium: true,
                 has_large: true,
+                only_pixels: false,
                 max_small_samples: 64,
                 max_small_side: 32,
             },
@@ -325,6 +339,7 @@ impl KernelKey {
                 stored_uniforms: false,
                 wide_loads: false,
                 buffered_shadow_map: false,
+                projects_points: false,
                 deepest_glass: u32::MAX,
                 paired_sums: false,
                 sums_with_nearest: false,
@@ -485,6 +500,11 @@ impl KernelKey {
     /// hidden blocks first?
     pub fn shares_entries(&self) -> bool {
         self.work.queue_groups > 0 || self.hides_blocks()
+    }
+
+    /// Does a pass of their own draw points, beside those of triangles?
+    pub fn draws_cloud(&self) -> bool {
+        self.work.projects_points && self.samples.shape == Shape::Triangles
     }
 
     /// Are there queues of triangles for another path than the first?

@@ -32,6 +32,8 @@ pub enum Pass {
     /// Finds the pixel of the boundary triangle at which drawing stops.
     OrderCut,
     RasterSmall(RasterPhase),
+    /// Draws points that no pass has projected.
+    RasterCloud(RasterPhase),
     /// Draws corners as discs instead of triangles.
     RasterPoints(RasterPhase),
     /// Writes the arguments of indirect dispatches.
@@ -154,6 +156,7 @@ impl Pass {
             Self::OrderRanks => "order_ranks",
             Self::OrderCut => "order_cut",
             Self::RasterSmall(_) => "raster_small",
+            Self::RasterCloud(_) => "raster_cloud",
             Self::RasterPoints(_) => "raster_points",
             Self::Args => "dispatch_args",
             Self::Clip => "clip",
@@ -190,6 +193,7 @@ impl Pass {
                 "geometry"
             }
             Self::RasterSmall(_)
+            | Self::RasterCloud(_)
             | Self::RasterPoints(_)
             | Self::RasterMedium(_)
             | Self::RasterLarge(_) => "raster",
@@ -213,7 +217,8 @@ impl Pass {
     /// What it writes, if it is a raster pass.
     pub const fn phase(self) -> Option<RasterPhase> {
         match self {
-            Self::RasterSmall(phase) | Self::RasterPoints(phase) => Some(phase),
+            Self::RasterSmall(phase) | Self::RasterCloud(phase) => Some(phase),
+            Self::RasterPoints(phase) => Some(phase),
             Self::RasterMedium(phase) | Self::RasterLarge(phase) | Self::RasterAll(phase) => {
                 Some(phase)
             }

@@ -391,6 +391,12 @@ impl Scene {
             .sum()
     }
 
+    /// Bytes of the attributes where no pass writes others behind them, else 0.
+    pub fn constant_attribute_bytes(&self) -> u64 {
+        let is_constant = self.particle_discs.is_none() && self.deformable_vertex_count() == 0;
+        self.vertex_bytes.len() as u64 * u64::from(is_constant)
+    }
+
     /// Returns true if an alpha cutoff can discard samples of any instance.
     pub fn is_masked(&self) -> bool {
         let materials = self

@@ -30,6 +30,8 @@ pub struct Needs {
     pub size: [u32; 2],
     pub triangles: u64,
     pub vertices: u64,
+    /// Bytes of the scene's attributes; 0 where passes write more behind them.
+    pub attribute_bytes: u64,
     pub draws: usize,
     /// Many draws show few primitives.
     pub instanced: bool,
@@ -74,6 +76,10 @@ pub struct Needs {
     pub particle_discs: bool,
     /// Some primitives are points or lines.
     pub points: bool,
+    /// Some are points.
+    pub clouds: bool,
+    /// All primitives are points.
+    pub only_points: bool,
     /// How joints are blended, where any deform a mesh.
     pub skinning: Option<Skinning>,
     /// Clips may move parts of the scene.
@@ -88,6 +94,8 @@ pub struct Needs {
     pub clipping: bool,
     /// No triangle is wider or higher than this, in pixels; infinite where clipping is needed.
     pub largest_px: f64,
+    /// No disc of a point has a larger radius, in pixels; the least one is not counted.
+    pub largest_disc_px: f64,
     /// How large triangles are, from a sample of them.
     pub sizes: TriangleSizes,
     /// The most pixels that the box of a primitive spans on an axis; infinite where it may cross
@@ -139,6 +147,7 @@ impl Needs {
             size: [view.width, view.height],
             triangles: scene.triangle_count(),
             vertices: scene.vertex_count(),
+            attribute_bytes: scene.constant_attribute_bytes(),
             draws: draws.len(),
             instanced: scene.is_instanced(),
             indexed: drawn().any(|p| p.indices.is_some()),
@@ -173,6 +182,8 @@ impl Needs {
             }),
             particle_discs: scene.particle_discs.is_some(),
             points: drawn().any(Primitive::is_spread),
+            clouds: drawn().any(Primitive::is_points),
+            only_points: !draws.is_empty() && drawn().all(Primitive::is_points),
             skinning: draws
                 .iter()
                 .find_map(|draw| Some(draw.deform.as_ref()?.joint_transforms.as_ref()?.skinning())),
@@ -191,6 +202,7 @@ impl Needs {
             perspective: view.linear_depth_m.is_none(),
             clipping: largest_px.is_infinite(),
             largest_px,
+            largest_disc_px: largest(disc_px),
             sizes: TriangleSizes::of(scene, draws, view),
             box_px: largest(box_px),
             rounding_px: rounding_px(
@@ -237,6 +249,8 @@ impl Needs {
             colors: true,
             material_count: self.material_count.max(1),
             normals_agree: false,
+            only_points: false,
+            largest_disc_px: f64::INFINITY,
             clipping: true,
             largest_px: f64::INFINITY,
             ..self.clone()
@@ -373,17 +387,18 @@ fn keeps_normals(draw: &Draw) -> bool {
     largest > 0.0 && (m * (1.0 / largest)).determinant().abs() > 1e-9
 }
 
-/// Upper bound of the extent of the triangles about a draw's points, in pixels. Points are not
-/// clipped.
-fn point_px(bounds: &Bounds, draw: &Draw) -> f64 {
+/// Upper bound of the radius of the discs of a draw's points, in pixels; 0 where it has none.
+fn disc_px(primitive: &Primitive, draw: &Draw, _: &View) -> f64 {
+    let bounds = draw.object_bounds(primitive);
+    if !primitive.is_points() || bounds.is_empty() {
+        return 0.0;
+    }
     let corners = bounds.corners().map(|corner| draw.clip_point(corner).w);
     let nearest = corners.into_iter().fold(f64::INFINITY, f64::min);
-    let radius = match nearest > 0.0 {
-        true => f64::from(draw.point_radius_px) / nearest,
+    match nearest > 0.0 {
+        true => (f64::from(draw.point_radius_px) / nearest).min(MAX_POINT_RADIUS_PX),
         false => MAX_POINT_RADIUS_PX,
-    };
-    // Two roots of 3 about the radius, with what is added to it.
-    3.5 * radius.clamp(1.0, MAX_POINT_RADIUS_PX) + 1.0
+    }
 }
 
 /// Upper bound of the extent of a draw's triangles in pixels; infinite if one may need clipping.
@@ -397,7 +412,8 @@ fn largest_px(primitive: &Primitive, draw: &Draw, view: &View) -> f64 {
         return 0.0;
     }
     if primitive.is_points() {
-        return point_px(&bounds, draw);
+        // Two roots of 3 about the radius, with what is added to it. Points are not clipped.
+        return 3.5 * disc_px(primitive, draw, view).max(1.0) + 1.0;
     }
     // No edge of a deformed mesh is longer than its box.
     let longest_edge = if draw.deform.is_some() {

@@ -107,8 +107,9 @@ const CULLING: Feature = Feature {
         why_omitted: |_| "culling = none, so each triangle is tested on its own".into(),
     }),
     variants: &[
-        ("triangle_source", |key, _| {
-            variant_if(key.culls(), "meshlets")
+        ("triangle_source", |key, _| match () {
+            () if key.culls() => "meshlets",
+            () => variant_if(key.draws_cloud(), "beside_points"),
         }),
         ("occlusion", |_, pass| match pass {
             Pass::Cull(CullPhase::PreviousFrame) => "previous_frame",
@@ -166,8 +167,12 @@ const VERTEX_FORMATS: Feature = Feature {
         why_omitted: |_| "no primitive has indices".into(),
     }),
     variants: &[
-        ("loads", |key, pass| {
-            variant_if(key.work.wide_loads && pass.resolves(), "wide")
+        ("loads", |key, pass| match key.vertices.split {
+            Some(_) => "split",
+            None => variant_if(key.work.wide_loads && pass.resolves(), "wide"),
+        }),
+        ("corner_records", |key, _| {
+            variant_if(key.work.projects_points, "projected")
         }),
         ("draw_records", |key, _| {
             variant_if(key.vertices.is_instanced, "instanced")
@@ -176,6 +181,10 @@ const VERTEX_FORMATS: Feature = Feature {
     constants: &[
         ("ONLY_TRIANGLE_LISTS", |key, _| {
             flag(key.vertices.only_triangle_lists)
+        }),
+        ("ONLY_POINTS", |key, _| flag(key.samples.only_points)),
+        ("SPLIT_WORD", |key, _| {
+            key.vertices.split.unwrap_or(0).into()
         }),
         ("HAS_INDICES", |key, _| {
             flag(key.vertices.fetch != Fetch::Direct)

@@ -7,7 +7,7 @@ use crate::{
     math::SMALL_EXTENT,
     scene::needs::Needs,
     shader::{
-        key::{Fetch, FramebufferLayout, KernelKey, WorkSharing},
+        key::{Fetch, FramebufferLayout, KernelKey, POINT_BLOCK, WorkSharing},
         pass::{Pass, RasterPhase, TriangleSource},
     },
 };
@@ -159,11 +159,16 @@ fn triangle_run(work: &WorkSharing) -> u32 {
     }
 }
 
+/// Most candidate samples of a disc that one invocation walks, at least.
+const SMALL_DISC_SAMPLES: u32 = 144;
+
 const SMALL_PATH: Feature = Feature {
     label: |key| format!("small={}", key.paths.max_small_samples),
     constants: &[
-        ("MAX_SMALL_SAMPLES", |key, _| {
-            key.paths.max_small_samples.into()
+        ("MAX_SMALL_SAMPLES", |key, pass| match pass {
+            // A workgroup for each disc costs more.
+            Pass::RasterCloud(_) => key.paths.max_small_samples.max(SMALL_DISC_SAMPLES).into(),
+            _ => key.paths.max_small_samples.into(),
         }),
         ("MAX_SMALL_SIDE", |key, _| key.paths.max_small_side.into()),
         ("TRIANGLE_RUN", |key, _| triangle_run(&key.work).into()),
@@ -358,6 +363,13 @@ const SHAPE: Feature = Feature {
     })],
     constants: &[
         ("SHAPE", |key, _| (key.samples.shape as u32).into()),
+        ("POINT_BLOCK", |_, _| POINT_BLOCK.into()),
+        ("HAS_BLOCK_BOXES", |key, _| {
+            flag(!key.moves() && key.options.position_format.packed_bits().is_none())
+        }),
+        ("ONLY_PIXELS", |key, _| {
+            flag(key.paths.only_pixels && !key.moves())
+        }),
         ("SHOWS_DISCS", |key, _| {
             flag(key.samples.shape == Shape::Triangles)
         }),
@@ -471,9 +483,10 @@ const SAMPLE_EFFECTS: Feature = Feature {
         ("sample_test", |key, _| {
             step_if(key.has_discs(), "particle_disc")
         }),
-        ("sample_test", |key, _| {
+        ("sample_test", |key, pass| {
+            let tests_discs = !matches!(pass, Pass::RasterCloud(_));
             step_if(
-                key.samples.has_points && key.samples.shape == Shape::Triangles,
+                key.samples.has_points && key.samples.shape == Shape::Triangles && tests_discs,
                 "point",
             )
         }),

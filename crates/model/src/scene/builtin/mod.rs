@@ -11,6 +11,7 @@ mod glassware;
 mod golf;
 mod hair;
 mod leaves;
+mod nebula;
 mod painted;
 mod panes;
 mod plates;
@@ -35,6 +36,10 @@ const SEED: BuiltinParam = whole(
     0.0,
     0.0..=4_294_967_295.0,
 );
+
+const fn points(default: f64) -> BuiltinParam {
+    whole("points", "number of points", default, 100.0..=100_000_000.0)
+}
 
 /// Every built-in scene.
 pub const BUILTINS: &[Builtin] = &[
@@ -304,11 +309,26 @@ pub const BUILTINS: &[Builtin] = &[
         name: "survey",
         about: "a town as a scanner has it: points with colors and normals, in classes",
         params: &[
-            whole("points", "number of points", 60_000.0, 100.0..=10_000_000.0),
+            points(60_000.0),
             whole("houses", "number of houses", 24.0, 1.0..=400.0),
             SEED,
         ],
         build: survey::build,
+    },
+    Builtin {
+        name: "nebula",
+        about: "points in a volume, in colored clouds along a spiral",
+        params: &[
+            points(60_000.0),
+            real(
+                "height",
+                "height of a cloud by its width; 0: all points lie in a plane",
+                0.6,
+                0.0..=1.0,
+            ),
+            SEED,
+        ],
+        build: nebula::build,
     },
     Builtin {
         name: "near",
