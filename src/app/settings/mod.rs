@@ -294,6 +294,7 @@ mod tests {
                 scale: Some(RenderScale::Double),
                 range_s: Some([0.5, 2.25]),
                 range_of: Some("walk".into()),
+                folder: Some("/films".into()),
             },
             keys,
             page: "https://example.org/lab/".into(),
