@@ -45,7 +45,7 @@ use crate::{
             state::{Clipboard, Closing, State},
             ui_frames::UiFrames,
         },
-        widgets::{panel::is_phone, theme},
+        widgets::{self, panel::is_phone, theme},
     },
     effect_files::has_f32_error,
     gpu::device::AdapterChoice,
@@ -127,7 +127,7 @@ impl App {
     pub fn new(cc: &eframe::CreationContext<'_>, options: Options) -> anyhow::Result<Self> {
         host::shaders::choose(None);
         let ctx = &cc.egui_ctx;
-        theme::apply(ctx);
+        widgets::apply(ctx);
         ctx.add_plugin(PointerFrames::default());
         ctx.add_plugin(UiFrames::default());
         ctx.options_mut(|options| options.zoom_with_keyboard = false); // The table of actions has these keys.
