@@ -367,8 +367,14 @@ impl Panel for FilmPanel {
                     .is_some_and(|form| film_ui(ui, form, &clock, takes_focus, offers));
                 let form = self.form.as_ref();
                 let moves = |form: &Form| form.turntable.is_some() || form.is_from_a;
-                if !form.is_some_and(moves) && !state.session.preset().is_moving() {
-                    theme::notice(ui, theme::amber(), NOTHING_MOVES);
+                if !state.session.preset().is_moving() {
+                    // Its room stays, so that no row moves under the pointer.
+                    ui.scope(|ui| {
+                        if form.is_some_and(moves) {
+                            ui.set_invisible();
+                        }
+                        theme::notice(ui, theme::amber(), NOTHING_MOVES);
+                    });
                 }
                 if before != self.form.as_ref().map(|form| form.request(false)) {
                     // What was agreed to, or failed, was another film.

@@ -590,7 +590,9 @@ impl eframe::App for App {
         self.apply();
         escape(self, self.was_typing);
         if !self.panels.has_dialog() && !self.panels.settings.takes_key() {
-            input::shortcuts(&ctx, &self.state, &mut self.typing, &self.commands);
+            let film = &self.panels.film;
+            let asked = (&self.state, film.is_open() && !film.is_exporting());
+            input::shortcuts(&ctx, asked, &mut self.typing, &self.commands);
             self.apply();
         }
         let is_awaited =
