@@ -6,7 +6,7 @@ use super::compare::{Compare, Difference, Mode};
 use crate::{
     app::{
         picture::{screen::Inputs, verification::Verdict},
-        shell::state::State,
+        shell::{action::Action, state::State},
         widgets::{
             form::{gain_ui, modes_ui},
             panel::plate,
@@ -83,7 +83,25 @@ pub fn labels_ui(
 
 /// The mode, and how much A and B differ.
 pub fn bar_ui(ui: &mut Ui, compare: &mut Compare, state: &State, rect: Rect) {
-    let text = difference_text(compare, state);
+    let known = difference_text(compare, state);
+    if known.is_none() && compare.mode == Some(Mode::Difference) {
+        let text = match state.picture.verification.is_running() {
+            true => "A and B are being measured".to_owned(),
+            false => format!(
+                "Verify ({}) measures A and B",
+                Action::Verify.shortcut_text()
+            ),
+        };
+        let inner = rect.shrink(12.0);
+        plate(
+            ui.painter(),
+            inner.center(),
+            Align2::CENTER_CENTER,
+            inner,
+            &text,
+        );
+    }
+    let text = known.unwrap_or_else(|| "A and B not compared yet".into());
     let width = 560.0f32.min(rect.width() - 24.0);
     let (is_narrow, more) = (is_narrow(rect), second_line(rect));
     let top = rect.bottom() - UP_TO_BAR - more;
@@ -129,7 +147,7 @@ pub fn bar_ui(ui: &mut Ui, compare: &mut Compare, state: &State, rect: Rect) {
 }
 
 /// `max \u{394} 12, RMS 0.31, 5 other triangles`, if both pictures have a verdict.
-fn difference_text(compare: &mut Compare, state: &State) -> String {
+fn difference_text(compare: &mut Compare, state: &State) -> Option<String> {
     let on = |verdict: Option<&Verdict>, requested: Option<&Inputs>| {
         verdict
             .filter(|verdict| requested == Some(&verdict.of))
@@ -140,12 +158,10 @@ fn difference_text(compare: &mut Compare, state: &State) -> String {
         state.picture.verification.verdict(),
         state.picture.screen.requested(),
     );
-    let Some((a, b)) = a.zip(b) else {
-        return "A and B not compared yet".into();
-    };
+    let (a, b) = a.zip(b)?;
     let is_known = |known: &&Difference| known.of[0].of == a.of && known.of[1].of == b.of;
     if let Some(known) = compare.difference.as_ref().filter(is_known) {
-        return known.text.clone();
+        return Some(known.text.clone());
     }
     let (found_a, found_b) = (&a.findings, &b.findings);
     let text = if found_a.size == found_b.size {
@@ -166,5 +182,5 @@ fn difference_text(compare: &mut Compare, state: &State) -> String {
         of: [a, b],
         text: text.clone(),
     });
-    text
+    Some(text)
 }
