@@ -298,6 +298,8 @@ fn a_turntable_is_one_click_and_does_not_change_the_preset() {
     open_dialog(&mut lab, "PNG frames", &folder.path().join("turn.png"), "2");
     lab.get_by_label("Turntable Camera").click();
     lab.run_steps(3);
+    // No key changes the preset behind the form.
+    press(&mut lab, Modifiers::NONE, Key::R);
     click(&mut lab, Role::Button, "Export film");
     let files = files_in(folder.path());
     assert_eq!(files.len(), 2, "{}", lab.state().log_text());
