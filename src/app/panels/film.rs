@@ -230,6 +230,11 @@ impl FilmPanel {
         self.is_open
     }
 
+    /// Is its form shown, which keys are typed into?
+    pub fn is_filled_in(&self) -> bool {
+        self.is_open && !self.is_exporting()
+    }
+
     pub fn is_exporting(&self) -> bool {
         self.running.is_some() || self.ending.is_some()
     }

@@ -308,8 +308,7 @@ impl App {
         }
         let before_s = self.played_at_s.replace(*now_s);
         session.advance(before_s.map_or(0.0, |before_s| *now_s - before_s));
-        // A software adapter draws the window on the processor that draws the picture, so the
-        // window does not run ahead of it. A finished picture repaints.
+        // A software adapter draws on the processor of the window. A finished picture repaints.
         if screen.gpu.summary.software && screen.is_waiting() {
             ctx.request_repaint_after_secs(PLAY_STEP_S);
         } else {
@@ -590,9 +589,8 @@ impl eframe::App for App {
         self.apply();
         escape(self, self.was_typing);
         if !self.panels.has_dialog() && !self.panels.settings.takes_key() {
-            let film = &self.panels.film;
-            let asked = (&self.state, film.is_open() && !film.is_exporting());
-            input::shortcuts(&ctx, asked, &mut self.typing, &self.commands);
+            let given = (&self.state, self.panels.film.is_filled_in());
+            input::shortcuts(&ctx, given, &mut self.typing, &self.commands);
             self.apply();
         }
         let is_awaited =
