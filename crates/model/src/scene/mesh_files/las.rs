@@ -57,7 +57,7 @@ pub fn load_shown(
     model: &dyn Source,
     budget: MemoryBudget,
     name: &str,
-    read_file: &mut ReadFile,
+    _read: &mut ReadFile,
 ) -> Result<Scene, LoadError> {
     let head = super::head(model, budget, "a LAS file", |head| {
         head.starts_with(b"LASF")
@@ -116,7 +116,7 @@ pub fn load_shown(
         } else {
             Shown::Class
         };
-        let mut scene = load_shown(model, budget, other.name(), read_file)?;
+        let mut scene = load_shown(model, budget, other.name(), _read)?;
         let note = format!(
             "the colors of its points are black; their {} is shown",
             other.name()
