@@ -167,6 +167,8 @@ fn window(cli: &Cli) -> Result<Exit, CliError> {
     let opened = opened
         .map(|(what, opened)| opened.map_err(|error| suggest_command(error, what)))
         .transpose()?;
+    let model = opened.as_ref().filter(|opened| opened.chose_scene);
+    model.map_or(Ok(()), backend::check_model)?;
     let adapter = match backend::backend_choice(&cli.common) {
         backend::BackendChoice::Oracle => {
             return Err(CliError::usage(

@@ -36,7 +36,13 @@ pub fn retake(
         preset_file::set(preset_file, "clock.time_s", &format!("{time_s:?}"))?;
     }
     if let Some(tier) = tier {
-        preset_file::set(preset_file, "accuracy.tier", tier)?;
+        preset_file::set(preset_file, "accuracy.tier", tier).map_err(|error| {
+            CliError::usage(
+                error
+                    .to_string()
+                    .replacen("--set: accuracy.tier", "--tier", 1),
+            )
+        })?;
     }
     Ok(())
 }

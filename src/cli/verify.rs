@@ -87,7 +87,8 @@ pub fn run(common: &Common, args: &Verify, streams: &mut Streams) -> Result<Exit
         bar.set_message(preset_file.id.clone());
         let verified = scene_of(common, preset_file, streams).and_then(|scene| {
             tell(&preset_file.preset, &scene, streams);
-            check(common, &options, preset_file, &scene, &mut backend)
+            let checked = check(common, &options, preset_file, &scene, &mut backend);
+            checked.map_err(|error| error.during(format!("preset {}", preset_file.id)))
         });
         match (verified, &preset_file.preset.test) {
             (Err(error), Some(test)) if test.expects_refusal(&error.sentence()) => {
@@ -97,9 +98,7 @@ pub fn run(common: &Common, args: &Verify, streams: &mut Streams) -> Result<Exit
                     error.sentence()
                 ));
             }
-            (verified, _) => rows.extend(
-                verified.map_err(|error| error.during(format!("preset {}", preset_file.id)))?,
-            ),
+            (verified, _) => rows.extend(verified?),
         }
         bar.inc(1);
     }

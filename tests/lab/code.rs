@@ -54,6 +54,14 @@ fn what_is_typed_is_seen_and_saved_on_demand() {
 
     // Closing asks, since the text is not saved.
     click(&mut lab, Role::Button, "Close the text");
+    click(&mut lab, Role::Button, "Discard them");
+    lab.step();
+    assert!(!says(&lab, "Close the text"));
+    click(&mut lab, Role::Button, "More of ink");
+    click(&mut lab, Role::Button, "Edit the text");
+    wait_for(&mut lab, "the text is shown", |lab| says(lab, "ink.wgsl"));
+    type_text(&mut lab, "fn late() -> f32 { return 1.0; }\n");
+    click(&mut lab, Role::Button, "Close the text");
     assert!(says(&lab, "ink.wgsl has changes that are not saved."));
     click(&mut lab, Role::Button, "Save them");
     let typed = format!("{INK}fn late() -> f32 {{ return 1.0; }}\n");

@@ -134,6 +134,9 @@ fn the_next_film_begins_as_the_last_one_was_exported_also_after_a_new_start() {
             .is_some(),
         "range, rate or format is another"
     );
+    let path = lab.get_by_role_and_label(Role::TextInput, "Path of the film");
+    let first = folder.path().join("mine-film.png");
+    assert_eq!(path.value().as_deref(), first.to_str());
     let path = folder.path().join("again");
     fill(
         &mut lab,
@@ -183,15 +186,15 @@ fn the_dialog_is_filled_in_and_confirmed_without_the_mouse() {
     press(&mut lab, Modifiers::COMMAND, Key::A);
     lab.event(egui::Event::Text(path.to_string_lossy().into_owned()));
     lab.run_steps(2);
-    // Width, height, the list of sizes with names, frames a second.
-    for text in ["64", "48", "", "2"] {
+    // The home folder, width, height, the list of sizes with names, frames a second.
+    for text in ["", "64", "48", "", "2"] {
         press(&mut lab, Modifiers::NONE, Key::Tab);
         if !text.is_empty() {
             lab.event(egui::Event::Text(text.to_owned()));
             lab.run_steps(2);
         }
     }
-    for _ in 0..4 {
+    for _ in 0..5 {
         press(&mut lab, Modifiers::SHIFT, Key::Tab);
     }
     assert!(lab.query_by_label("2 frames, 1.00 s").is_some());
@@ -295,6 +298,8 @@ fn a_turntable_is_one_click_and_does_not_change_the_preset() {
     open_dialog(&mut lab, "PNG frames", &folder.path().join("turn.png"), "2");
     lab.get_by_label("Turntable Camera").click();
     lab.run_steps(3);
+    // No key changes the preset behind the form.
+    press(&mut lab, Modifiers::NONE, Key::R);
     click(&mut lab, Role::Button, "Export film");
     let files = files_in(folder.path());
     assert_eq!(files.len(), 2, "{}", lab.state().log_text());

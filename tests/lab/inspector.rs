@@ -384,7 +384,10 @@ fn the_tick_of_the_gradient_adds_a_color_at_the_bottom_and_removes_it() {
         bottom(&lab).is_some_and(|bottom| bottom != preset.output.background),
         "a gradient that can be seen"
     );
-    lab.get_by_label("output.background_bottom");
+    // The harness panics where a font lacks a sign.
+    lab.get_by_label("output.background_bottom").click();
+    lab.run_steps(3);
+    press(&mut lab, Modifiers::NONE, Key::Escape);
     let [top_after, below_after] = corners(&mut lab);
     assert!(
         below_after != below && top_after.0[0].abs_diff(top.0[0]) < 12,

@@ -295,6 +295,19 @@ fn a_model_is_plain_until_a_look_is_chosen_and_after_a_click() {
         stack_of(&hatch),
         "it takes the look that was chosen"
     );
+    assert!(lab.query_by_label("unsaved").is_none());
+    press(&mut lab, Modifiers::NONE, Key::R);
+    for _ in 0..2 {
+        assert!(lab.query_by_label("unsaved").is_some(), "it stays changed");
+        drop_files(&mut lab, &[&other]);
+    }
+    undo(&mut lab);
+    paste(&mut lab, "[effects.toon]\nsteps = 3\n");
+    settle(&mut lab);
+    assert_eq!(scene(&lab), SceneSource::File(other.clone()));
+    assert_eq!(stack(&lab), ["toon"]);
+    assert!(lab.query_by_label("unsaved").is_some(), "no file has it");
+    choose(&mut lab, hatch.title(), Modifiers::NONE);
     for label in ["Plain look", "New"] {
         match label {
             "New" => press(&mut lab, Modifiers::COMMAND, Key::N),

@@ -66,6 +66,26 @@ fn in_a_small_window_no_control_is_cut_off_or_covered() {
 }
 
 #[test]
+fn the_guide_stays_inside_the_window() {
+    let size = [900.0, 700.0];
+    let Some(mut lab) = created(Some("facet-knot"), Folders::default(), None, size) else {
+        return;
+    };
+    settle(&mut lab);
+    click(&mut lab, Role::Button, "Help");
+    click(&mut lab, Role::Button, "Guide");
+    lab.run_steps(4);
+    let window = Rect::from_min_size(Pos2::ZERO, size.into());
+    for text in ["Ten minutes lead", "the picture costs (milliseconds)"] {
+        let place = lab.get_by_label_contains(text).rect().x_range();
+        assert!(
+            window.x_range().contains(place.min) && window.x_range().contains(place.max),
+            "{text}"
+        );
+    }
+}
+
+#[test]
 fn in_a_small_window_no_word_of_the_top_bar_covers_another_when_there_is_most_to_say() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let path = folder.path().join("all.toml");

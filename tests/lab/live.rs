@@ -9,6 +9,8 @@ use std::{
 use egui::{Key, Modifiers, Role};
 use egui_kittest::kittest::Queryable as _;
 
+use rasterlab::preset_file::Folders;
+
 use crate::{
     common::own_shaders,
     files::{drop_files, tiny_glb},
@@ -429,6 +431,32 @@ fn a_new_effect_is_written_beside_the_preset_and_enabled() {
         lab.state().preset_file().preset.stack.get(&name).is_some()
     });
     assert_eq!(error_lines(&lab), [""; 0]);
+}
+
+#[test]
+fn a_new_effect_stays_out_of_the_folder_of_presets() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let [presets, own] = ["presets", "own"].map(|name| folder.path().join(name));
+    let (path, folders) = (
+        presets.join("mine.toml"),
+        Folders {
+            presets: Some(presets),
+            effect_folders: vec![own.clone()],
+            ..Folders::default()
+        },
+    );
+    write(&path, "schema = 2\n");
+    std::fs::create_dir(&own).expect("a folder");
+    let Some(mut lab) = lab_with(&path.to_string_lossy(), folders) else {
+        return;
+    };
+    press(&mut lab, Modifiers::SHIFT, Key::A);
+    click(&mut lab, Role::Button, "Write a new effect");
+    lab.get_by_role_and_label(Role::TextInput, "Name").focus();
+    lab.step();
+    lab.event(egui::Event::Text("foggy".into()));
+    lab.run_steps(3);
+    assert!(has_badge(&lab, "own/foggy.wgsl"));
 }
 
 #[test]

@@ -113,7 +113,7 @@ fn arrows_select_and_enter_carries_out_actions_and_effects() {
         return;
     };
     search(&mut lab, "front view");
-    assert_eq!(selected(&lab), "Front view");
+    assert_eq!(selected(&lab), "Front view, then back");
     let camera = lab.state().preset_file().preset.camera;
     key(&mut lab, Key::Enter);
     assert!(

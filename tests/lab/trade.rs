@@ -99,7 +99,7 @@ fn a_measured_combination_is_a_point_and_a_click_on_it_switches_the_preset_in_on
     spread_is_shown(&lab, &copied);
     // Another camera makes another picture, so the points are stale.
     assert!(lab.query_by_label_contains("stale: ").is_none());
-    click(&mut lab, Role::Button, "Top view");
+    click(&mut lab, Role::Button, "Top view, then bottom");
     assert!(lab.query_by_label_contains("stale: ").is_some());
 }
 

@@ -35,7 +35,7 @@ fn verify_measures_the_picture_and_a_change_makes_the_result_stale() {
         "{accuracy:?}"
     );
     assert!(lab.query_all_by_label_contains("no wrong pixel").count() > 0);
-    click(&mut lab, Role::Button, "Top view");
+    click(&mut lab, Role::Button, "Top view, then bottom");
     assert!(lab.state().accuracy().is_none());
     assert!(lab.query_all_by_label_contains("stale").count() > 0);
 }
@@ -123,7 +123,7 @@ fn verifying_shows_how_far_it_is_and_ends_in_the_middle_when_it_is_canceled() {
         "no progress is shown: {said:?}"
     );
 
-    click(&mut lab, Role::Button, "Top view");
+    click(&mut lab, Role::Button, "Top view, then bottom");
     let begun = begin(&mut lab);
     while begun.elapsed() < whole / 2 {
         lab.step();
@@ -294,7 +294,7 @@ fn the_legend_says_that_nothing_is_wrong_where_nothing_is() {
         "{sentence}"
     );
     // Another picture is judged as soon as it is at rest.
-    click(&mut lab, Role::Button, "Top view");
+    click(&mut lab, Role::Button, "Top view, then bottom");
     assert!(lab.state().accuracy().is_some());
     assert!(lab.query_by_label_contains("no errors: 0 of ").is_some());
 }

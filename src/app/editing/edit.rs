@@ -120,7 +120,8 @@ impl Session {
                 }
             }
             Edit::LookAlong(direction) => {
-                self.move_camera(|camera| camera_moves::look_along(camera, direction))
+                self.move_camera(|camera| camera_moves::look_along(camera, direction));
+                return self.edit(Edit::FrameScene);
             }
             Edit::ToggleOrthographic => self.move_camera(camera_moves::toggle_orthographic),
         }

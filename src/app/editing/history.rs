@@ -114,6 +114,10 @@ impl<T: Clone + PartialEq> History<T> {
                 .is_some_and(|open| open.latest != self.present)
     }
 
+    pub fn can_redo(&self) -> bool {
+        !self.future.is_empty()
+    }
+
     /// Number of steps that can be taken back, without the open one.
     pub fn steps(&self) -> usize {
         self.past.len()

@@ -10,6 +10,7 @@ use crate::{
         shell::{log::Level, state::State},
     },
     effect_files::{duplicate, template},
+    host::disk,
     preset_file::{self, Existing, user_effects_folder},
 };
 
@@ -63,10 +64,14 @@ pub fn written(app: &mut App, path: PathBuf, origin: Origin, outcome: Result<(),
     );
 }
 
-/// Where a new effect is written: beside the preset, in the folder of effects that is in use, or in
-/// the user's own.
+/// Where a new effect is written: beside the preset, unless that lies in the folder of `--presets`, in
+/// the folder of effects that is in use, or in the user's own.
 pub fn folder(state: &State) -> PathBuf {
-    if let Some(beside) = state.files.live.watcher.targets().preset_effects() {
+    let beside = state.files.live.watcher.targets().preset_effects();
+    let absolute = |folder: &Path| disk::absolute(folder).ok();
+    let gallery = state.files.folders.presets.as_deref().and_then(absolute);
+    let is_own = |beside: &PathBuf| gallery != beside.parent().and_then(absolute);
+    if let Some(beside) = beside.filter(is_own) {
         return beside;
     }
     let user = user_effects_folder();

@@ -195,6 +195,10 @@ fn land(app: &mut App, request: Request, boxes: Option<(Bounds, Bounds)>) {
         // The clip belongs to the scene that goes.
         without_clip(open).landed_on(&model, fit.as_ref())
     };
+    // What was changed in a look stays a change of it.
+    let filed = app.state.session.as_filed();
+    let unchanged = (manner == Manner::Scene && app.state.session.is_modified())
+        .then(|| without_clip(filed).landed_on(&landed, fit.as_ref()));
     if let Some(scene) = &own {
         landed.map_missing_parts(scene);
         landed.settle(scene, true);
@@ -241,6 +245,9 @@ fn land(app: &mut App, request: Request, boxes: Option<(Bounds, Bounds)>) {
         app.state.session.remember(*opened);
     }
     finish(app, landed, said);
+    if let Some(unchanged) = unchanged {
+        app.state.session.remember(unchanged);
+    }
 }
 
 /// A look without the clip of its own scene.

@@ -1,7 +1,10 @@
 //! Exporting a film: its format, size, rate and range, and how far it is. It is drawn on another
 //! thread and another device, in a page between the window's frames.
 
-use std::{path::Path, sync::Arc};
+use std::{
+    path::{Path, PathBuf},
+    sync::Arc,
+};
 
 use egui::{self, Button, Key, Label, Ui, vec2};
 
@@ -11,7 +14,8 @@ use crate::{
     app::{
         files::apply::export_film,
         jobs::film::{Failure, Finished, Format, Progress, Request, time_left_text},
-        settings::film::FilmSettings,
+        panels::dialogs::places::places_ui,
+        settings::{film::FilmSettings, recents::Recents},
         shell::{command::Commands, log::Level, state::State},
         widgets::{
             form::{field_ui, form_ui, menu_ui, number_ui, text_ui, words_ui},
@@ -22,6 +26,7 @@ use crate::{
         },
     },
     film::{Turntable, find_ffmpeg},
+    host::disk,
     preset::{Clock, Preset},
 };
 
@@ -118,11 +123,7 @@ impl Form {
         let format = Format::here()
             .find(|format| *format == last.format)
             .unwrap_or(Format::Apng);
-        let path = format.named(
-            &std::env::current_dir()
-                .unwrap_or_default()
-                .join(format!("{id}-film.png")),
-        );
+        let path = format.named(&folder(last).join(format!("{id}-film.png")));
         Self {
             preset: session.preset_file.id.clone(),
             path: path.display().to_string(),
@@ -159,6 +160,7 @@ impl Form {
     fn settings(&self, clock: &Clock) -> FilmSettings {
         let range_s = Some(self.range_s).filter(|range_s| *range_s != clock.range_s);
         let range_of = range_s.map(|_| self.preset.clone());
+        let path = disk::absolute(self.path.trim()).unwrap_or_default();
         FilmSettings {
             format: self.format,
             size: Some(self.size),
@@ -166,6 +168,7 @@ impl Form {
             scale: self.scale,
             range_s,
             range_of,
+            folder: path.parent().map(|path| path.display().to_string()),
         }
     }
 
@@ -225,6 +228,11 @@ impl FilmPanel {
 
     pub fn is_open(&self) -> bool {
         self.is_open
+    }
+
+    /// Is its form shown, which keys are typed into?
+    pub fn is_filled_in(&self) -> bool {
+        self.is_open && !self.is_exporting()
     }
 
     pub fn is_exporting(&self) -> bool {
@@ -356,15 +364,22 @@ impl Panel for FilmPanel {
                 }
                 let clock = state.session.preset().clock;
                 let before = self.form.as_ref().map(|form| form.request(false));
+                let offers = (&state.settings.recents, commands);
                 let takes_focus = std::mem::take(&mut self.takes_focus);
                 let is_entered = self
                     .form
                     .as_mut()
-                    .is_some_and(|form| film_ui(ui, form, &clock, takes_focus, commands));
+                    .is_some_and(|form| film_ui(ui, form, &clock, takes_focus, offers));
                 let form = self.form.as_ref();
                 let moves = |form: &Form| form.turntable.is_some() || form.is_from_a;
-                if !form.is_some_and(moves) && !state.session.preset().is_moving() {
-                    theme::notice(ui, theme::amber(), NOTHING_MOVES);
+                if !state.session.preset().is_moving() {
+                    // Its room stays, so that no row moves under the pointer.
+                    ui.scope(|ui| {
+                        if form.is_some_and(moves) {
+                            ui.set_invisible();
+                        }
+                        theme::notice(ui, theme::amber(), NOTHING_MOVES);
+                    });
                 }
                 if before != self.form.as_ref().map(|form| form.request(false)) {
                     // What was agreed to, or failed, was another film.
@@ -376,13 +391,22 @@ impl Panel for FilmPanel {
     }
 }
 
+/// Where a film is proposed: in the folder of the last one, else in that of videos or the home folder.
+fn folder(last: &FilmSettings) -> PathBuf {
+    let home = std::env::home_dir();
+    let videos = home.as_ref().map(|home| home.join("Videos"));
+    let folders = [last.folder.as_ref().map(PathBuf::from), videos, home];
+    let mut folders = folders.into_iter().flatten();
+    folders.find(|folder| folder.is_dir()).unwrap_or_default()
+}
+
 /// Returns true if Enter was pressed in the path.
 fn film_ui(
     ui: &mut Ui,
     form: &mut Form,
     clock: &Clock,
     takes_focus: bool,
-    commands: &Commands,
+    (recents, commands): (&Recents, &Commands),
 ) -> bool {
     let mut format = form.format;
     let formats = Format::here().map(|format| (format, format.name(), ""));
@@ -397,6 +421,10 @@ fn film_ui(
     let is_entered = path.lost_focus() && ui.input(|i| i.key_pressed(Key::Enter));
     if takes_focus {
         path.request_focus();
+    }
+    if let Some(folder) = places_ui(ui, recents) {
+        let name = Path::new(&form.path).file_name().unwrap_or_default();
+        form.path = folder.join(name).display().to_string();
     }
     let schedule = form.request(false).schedule(clock).ok();
     if let Some(schedule) = &schedule {

@@ -102,6 +102,7 @@ impl Panel for HelpWindow {
             match page {
                 Page::Guide => {
                     let scroll = ScrollArea::vertical().max_height(size.y);
+                    let scroll = scroll.min_scrolled_height(size.y);
                     scroll
                         .auto_shrink([false, true])
                         .show(ui, |ui| text_ui(ui, GUIDE));
@@ -174,7 +175,7 @@ fn text_ui(ui: &mut Ui, page: &str) {
             while let Some(more) = lines.next_if(|line| !starts_block(line)) {
                 text = format!("{text} {}", more.trim());
             }
-            ui.label(inline(ui, &text, f32::INFINITY));
+            ui.label(inline(ui, &text, ui.available_width()));
             ui.add_space(theme::HALF);
         }
     }
@@ -187,12 +188,29 @@ fn table_ui(ui: &mut Ui, rows: &[&str]) {
             .map(|cell| cell.trim().to_owned())
             .collect()
     };
-    let columns = cells(rows[0]).len().max(1);
-    let width = (ui.available_width() - 16.0) / columns as f32;
-    Grid::new(rows[0]).spacing([8.0, 4.0]).show(ui, |ui| {
-        for row in rows.iter().filter(|row| !row.starts_with("|-")) {
-            for cell in cells(row) {
-                ui.label(inline(ui, &cell, width - 8.0));
+    let rows: Vec<_> = rows
+        .iter()
+        .filter(|row| !row.starts_with("|-"))
+        .map(|row| cells(row))
+        .collect();
+    // A column has room for its longest cell, as a share of the longest ones of all.
+    let columns = 0..rows[0].len();
+    let longest = |at: usize| {
+        rows.iter()
+            .filter_map(|row| row.get(at))
+            .map(String::len)
+            .max()
+    };
+    let shares: Vec<f32> = columns
+        .map(|at| longest(at).unwrap_or(0).clamp(8, 64) as f32)
+        .collect();
+    let each = (ui.available_width() - 8.0 * shares.len() as f32) / shares.iter().sum::<f32>();
+    Grid::new(&rows[0]).spacing([8.0, 4.0]).show(ui, |ui| {
+        for row in &rows {
+            for (cell, share) in row.iter().zip(&shares) {
+                // A grid would lay a text out on one line.
+                let job = inline(ui, cell, each * share);
+                ui.label(ui.fonts_mut(|fonts| fonts.layout_job(job)));
             }
             ui.end_row();
         }
@@ -205,7 +223,7 @@ fn inline(ui: &Ui, text: &str, width: f32) -> LayoutJob {
     let body = egui::TextStyle::Body.resolve(ui.style());
     let code = FontId::monospace(body.size * 0.92);
     let mut job = LayoutJob {
-        wrap: TextWrapping::wrap_at_width(width.min(ui.available_width())),
+        wrap: TextWrapping::wrap_at_width(width),
         ..LayoutJob::default()
     };
     for (at, part) in text.split('`').enumerate() {

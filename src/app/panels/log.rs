@@ -58,8 +58,8 @@ impl Panel for LogPanel {
     }
 }
 
-/// Shows the toasts at the upper right of `area`, below the buttons there, and repaints when the
-/// next one ends.
+/// Shows the toasts at the upper right of `area`, below the buttons and what is compiled, and repaints
+/// when the next one ends.
 pub fn toasts_ui(ctx: &egui::Context, log: &Log, area: Rect, now_s: f64) {
     let Some(wait_s) = log.next_toast_ends_in_s(now_s) else {
         return;
@@ -68,7 +68,7 @@ pub fn toasts_ui(ctx: &egui::Context, log: &Log, area: Rect, now_s: f64) {
     egui::Area::new(egui::Id::unique("toasts"))
         .order(egui::Order::Foreground)
         .pivot(egui::Align2::RIGHT_TOP)
-        .fixed_pos(area.right_top() + egui::vec2(-10.0, 46.0))
+        .fixed_pos(area.right_top() + egui::vec2(-10.0, 84.0))
         .interactable(false)
         .show(ctx, |ui| {
             ui.set_max_width((area.width() - 20.0).clamp(160.0, 380.0));

@@ -168,13 +168,14 @@ fn steps_ui(ui: &mut Ui, state: &State, commands: &Commands) {
     }
 }
 
-/// An action with its shortcut; a phone has no keys.
-fn action_ui(ui: &mut Ui, action: Action, width: f32, commands: &Commands) {
+/// An action with its shortcut; a phone has no keys. What `is_on` is marked.
+fn action_ui(ui: &mut Ui, action: Action, width: f32, is_on: bool, commands: &Commands) {
     let button = match is_phone(ui.ctx()) {
         true => entry(action.label(), theme::ROW),
         false => entry(action.label(), width).shortcut_text(action.shortcut_text()),
     };
-    if ui.add(button).accessible_name(action.label()).clicked() {
+    let button = ui.add(button.selected(is_on));
+    if button.accessible_name(action.label()).clicked() {
         commands.perform(action);
         ui.close();
     }
@@ -182,7 +183,27 @@ fn action_ui(ui: &mut Ui, action: Action, width: f32, commands: &Commands) {
 
 /// The entry of an action in a menu.
 fn entry_ui(ui: &mut Ui, action: Action, state: &State, commands: &Commands) {
-    action_ui(ui, action, 208.0, commands);
+    let open = &state.open;
+    let is_on = match action {
+        Action::Overlays => state.picture.overlays.is_any(),
+        Action::Handles => open.handles,
+        Action::BoundingBox => open.bounding_box,
+        Action::Axes => open.axes,
+        Action::Grid => open.grid,
+        Action::Trade => open.trade,
+        Action::Timing => open.timing,
+        Action::Timeline => open.timeline,
+        Action::Log => open.log,
+        _ => false,
+    };
+    let is_enabled = match action {
+        Action::Undo => state.history.can_undo(),
+        Action::Redo => state.history.can_redo(),
+        _ => true,
+    };
+    ui.add_enabled_ui(is_enabled, |ui| {
+        action_ui(ui, action, 208.0, is_on, commands)
+    });
     if action == Action::Open {
         ui.menu_button("Open recent", |ui| recents_ui(ui, state, commands));
     }
@@ -240,7 +261,7 @@ fn looks_ui(ui: &mut Ui, chosen: ThemeChoice, commands: &Commands) {
         }
         ui.separator();
         for action in [Action::ScaleUp, Action::ScaleDown, Action::ScaleReset] {
-            action_ui(ui, action, 240.0, commands);
+            action_ui(ui, action, 240.0, false, commands);
         }
     });
 }

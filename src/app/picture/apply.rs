@@ -10,6 +10,7 @@ use super::{
     measured::error_text,
     review::{self, Review},
     screen::Inputs,
+    state::PictureState,
     tier_times,
     verification::Verdict,
 };
@@ -195,17 +196,24 @@ pub fn draw_for_review(state: &mut State) {
     }
 }
 
-/// Starts the oracle on the picture that is shown, and on the one it is compared with. Nothing
-/// while it runs.
+/// Starts the oracle on the picture that is shown, and on the one it is compared with; if only that
+/// has no verdict, on that alone. Nothing while it runs.
 pub fn verify(app: &mut App) {
-    if app.state.picture.verification.is_running() {
+    let PictureState {
+        verification,
+        screen,
+        ..
+    } = &app.state.picture;
+    if verification.is_running() {
         return;
     }
-    verify_shown(&mut app.state);
+    let shown = screen.requested();
     let compared = app.panels.viewport.compare.unjudged();
-    if let Some(inputs) =
-        compared.filter(|inputs| Some(inputs) != app.state.picture.screen.requested())
-    {
+    let compared = compared.filter(|inputs| Some(inputs) != shown);
+    if compared.is_none() || verification.verdict_on(shown).is_none() {
+        verify_shown(&mut app.state);
+    }
+    if let Some(inputs) = compared {
         judge(&mut app.state, inputs);
     }
 }

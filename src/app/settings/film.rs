@@ -33,6 +33,8 @@ pub struct FilmSettings {
     pub range_s: Option<[f64; 2]>,
     /// The preset that the range belongs to.
     pub range_of: Option<String>,
+    /// Its folder.
+    pub folder: Option<String>,
 }
 
 impl Default for FilmSettings {
@@ -44,6 +46,7 @@ impl Default for FilmSettings {
             scale: None,
             range_s: None,
             range_of: None,
+            folder: None,
         }
     }
 }

@@ -12,7 +12,7 @@ use crate::{
     app::picture::review::KeptReview,
     host::disk,
     preset::SceneSource,
-    preset_file::{self, Folders, PresetFile},
+    preset_file::{self, Folders, Look, PresetFile},
 };
 
 /// What was open.
@@ -30,6 +30,8 @@ pub struct LastSession {
     filed: String,
     /// The preset with the edits; none without any.
     edited: Option<String>,
+    /// The preset whose look is shown on a scene that the user chose.
+    look: Option<Look>,
     /// The review of goldens.
     #[serde(default, skip_serializing_if = "KeptReview::is_empty")]
     pub review: KeptReview,
@@ -66,6 +68,11 @@ impl LastSession {
             is_read_only: open.read_only,
             filed: preset_file::to_shared_toml(&absolute(filed)),
             edited,
+            // TOML holds no other paths.
+            look: open.look.clone().filter(|look| {
+                let path = look.path.as_ref();
+                path.is_none_or(|path| path.to_str().is_some())
+            }),
             review: KeptReview::default(),
         }
     }
@@ -184,6 +191,7 @@ impl LastSession {
         let mut parsed = preset_file::parse_with(text, &self.id, name, effects)
             .map_err(|error| error.to_string())?;
         (parsed.path, parsed.read_only) = (self.path.clone(), self.is_read_only);
+        (parsed.look, parsed.chose_scene) = (self.look.clone(), self.look.is_some());
         Ok(parsed)
     }
 }
@@ -308,6 +316,7 @@ mod tests {
             (&restored.preset_file.preset, &restored.preset_file.path),
             (&open.preset, &None)
         );
+        assert!(restored.preset_file.is_look_of("plain", None));
         std::fs::remove_file(&model).expect("it is there");
         let error = session.restore(&folders).expect_err("the model is gone");
         assert!(error.contains("fox.glb is gone"), "{error}");

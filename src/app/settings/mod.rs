@@ -244,8 +244,6 @@ fn panel_width<'de, D: Deserializer<'de>>(from: D) -> Result<Option<f32>, D::Err
 
 #[cfg(test)]
 mod tests {
-    use std::collections::BTreeMap;
-
     use egui::{Key, Modifiers};
 
     use super::{
@@ -270,9 +268,7 @@ mod tests {
             theme: ThemeChoice::Light,
             scale: 1.3,
             recents: ["/models/a b.glb", "/presets/\"x\".toml"].iter().collect(),
-            up_axes: BTreeMap::from([["/models/a.b.ply", "-z"].map(str::to_owned).into()])
-                .try_into()
-                .expect("an axis"),
+            up_axes: toml_edit::de::from_str("'/models/a.b.ply' = '-z'").expect("an axis"),
             window: WindowSize {
                 size: [900.0, 600.0],
                 is_maximized: true,
@@ -298,6 +294,7 @@ mod tests {
                 scale: Some(RenderScale::Double),
                 range_s: Some([0.5, 2.25]),
                 range_of: Some("walk".into()),
+                folder: Some("/films".into()),
             },
             keys,
             page: "https://example.org/lab/".into(),

@@ -1,25 +1,39 @@
 //! The axes that the person chose to be up in models, for when those are opened again.
 
-use std::collections::BTreeMap;
+use std::fmt;
 
-use serde::{Deserialize, Serialize};
+use serde::{
+    Deserialize, Deserializer, Serialize, Serializer,
+    de::{Error as _, MapAccess, Visitor},
+};
 
 use crate::{host::disk, preset::SceneSource, preset_file::PresetFile, scene::UpAxis};
 
-/// For absolute paths of models, the axis that was chosen to be up.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(
-    try_from = "BTreeMap<String, String>",
-    into = "BTreeMap<String, String>"
-)]
-pub struct UpAxes(BTreeMap<String, UpAxis>);
+/// Models that are remembered.
+const CAPACITY: usize = 200;
+
+/// For absolute paths of models, the axis that was chosen to be up; the newest last.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct UpAxes(Vec<(String, UpAxis)>);
 
 impl UpAxes {
+    fn get(&self, model: &str) -> Option<UpAxis> {
+        let known = self.0.iter().find(|(known, _)| known == model);
+        known.map(|(_, axis)| *axis)
+    }
+
+    /// Puts a model last, and forgets the oldest beyond [`CAPACITY`].
+    fn add(&mut self, model: String, axis: UpAxis) {
+        self.0.retain(|(known, _)| *known != model);
+        self.0.push((model, axis));
+        self.0.drain(..self.0.len().saturating_sub(CAPACITY));
+    }
+
     /// Gives a model that is opened the axis that was chosen for it, if none is named. Returns
     /// whether it did.
     pub fn give(&self, opened: &mut PresetFile) -> bool {
         let is_open = opened.preset.parts.up == UpAxis::Auto;
-        let chosen = || self.0.get(&model(opened)?).copied();
+        let chosen = || self.get(&model(opened)?);
         let given = is_open.then(chosen).flatten();
         opened.preset.parts.up = given.unwrap_or(opened.preset.parts.up);
         given.is_some()
@@ -32,9 +46,9 @@ impl UpAxes {
         if (up != before || !self.0.is_empty())
             && let Some(model) = model(open)
             && up != UpAxis::Auto
-            && up != self.0.get(&model).copied().unwrap_or(before)
+            && up != self.get(&model).unwrap_or(before)
         {
-            self.0.insert(model, up);
+            self.add(model, up);
         }
     }
 }
@@ -49,27 +63,51 @@ fn model(open: &PresetFile) -> Option<String> {
     }
 }
 
-impl TryFrom<BTreeMap<String, String>> for UpAxes {
-    type Error = String;
-
-    fn try_from(words: BTreeMap<String, String>) -> Result<Self, String> {
-        let axis = |(model, word): (String, String)| {
-            let mut axes = UpAxis::ALL.into_iter();
-            let found = axes.find(|axis| axis.word() == word);
-            let axis = found.ok_or_else(|| format!("it takes {}", UpAxis::WORDS.join(", ")))?;
-            Ok((model, axis))
-        };
-        words
-            .into_iter()
-            .map(axis)
-            .collect::<Result<_, _>>()
-            .map(Self)
+impl Serialize for UpAxes {
+    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        to.collect_map(self.0.iter().map(|(model, axis)| (model, axis.word())))
     }
 }
 
-impl From<UpAxes> for BTreeMap<String, String> {
-    fn from(axes: UpAxes) -> Self {
-        let word = |(model, axis): (String, UpAxis)| (model, axis.word().to_owned());
-        axes.0.into_iter().map(word).collect()
+impl<'de> Deserialize<'de> for UpAxes {
+    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        from.deserialize_map(Reader)
+    }
+}
+
+struct Reader;
+
+impl<'de> Visitor<'de> for Reader {
+    type Value = UpAxes;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a table of models")
+    }
+
+    fn visit_map<M: MapAccess<'de>>(self, mut map: M) -> Result<UpAxes, M::Error> {
+        let mut axes = UpAxes::default();
+        while let Some((model, word)) = map.next_entry::<_, String>()? {
+            let axis = UpAxis::ALL.into_iter().find(|axis| axis.word() == word);
+            let takes = || M::Error::custom(format_args!("it takes {}", UpAxis::WORDS.join(", ")));
+            axes.add(model, axis.ok_or_else(takes)?);
+        }
+        Ok(axes)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_newest_models_are_kept_in_order() {
+        let mut axes = UpAxes::default();
+        (0..CAPACITY + 7).for_each(|i| axes.add(format!("/{i}.ply"), UpAxis::Z));
+        axes.add("/9.ply".into(), UpAxis::X);
+        let text = toml_edit::ser::to_string(&axes).expect("TOML");
+        let read: UpAxes = toml_edit::de::from_str(&text).expect("a table");
+        assert_eq!(read, axes);
+        assert_eq!((axes.0.len(), &*axes.0[0].0), (CAPACITY, "/7.ply"));
+        assert_eq!(axes.0.last(), Some(&("/9.ply".into(), UpAxis::X)));
     }
 }

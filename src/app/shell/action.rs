@@ -90,9 +90,9 @@ actions! {
     RandomizeWindow "Randomize: locks and seeds…" [shift(Key::R)] |app| app.panels.randomize.toggle();
     Sweep "Sweep of parameters…" [shift(Key::S)] |app| app.panels.sweep.toggle();
     Frame "Frame the scene" [plain(Key::Home)] |app| app.edit(Edit::FrameScene);
-    Front "Front view" [plain(Key::Num1)] |app| app.edit(Edit::LookAlong(FRONT));
-    Side "Side view" [plain(Key::Num3)] |app| app.edit(Edit::LookAlong(SIDE));
-    Top "Top view" [plain(Key::Num7)] |app| app.edit(Edit::LookAlong(TOP));
+    Front "Front view, then back" [plain(Key::Num1)] |app| app.edit(Edit::LookAlong(FRONT));
+    Side "Side view, then other side" [plain(Key::Num3)] |app| app.edit(Edit::LookAlong(SIDE));
+    Top "Top view, then bottom" [plain(Key::Num7)] |app| app.edit(Edit::LookAlong(TOP));
     Orthographic "Orthographic or perspective" [plain(Key::Num5)] |app| app.edit(Edit::ToggleOrthographic);
     AddBookmark "Bookmark the camera" [shift(Key::C)] |app| app.edit(Edit::AddBookmark);
     NextBookmark "Next bookmark of the camera" [plain(Key::C)] |app| app.edit(Edit::NextBookmark);

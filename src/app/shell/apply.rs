@@ -154,7 +154,13 @@ pub fn paste(app: &mut App, text: &str) {
     match row {
         Some(path) if !is_preset => set_text(state, &path, text.trim()),
         _ => match preset_file::from_line(text) {
-            Ok(pasted) => request_open(app, pasted, Manner::WithScene, "Pasted a preset".into()),
+            Ok(pasted) => {
+                let manner = match preset_file::is_look_text(text, &pasted) {
+                    true => Manner::Look,
+                    false => Manner::WithScene,
+                };
+                request_open(app, pasted, manner, "Pasted a preset".into());
+            }
             Err(error) => state.notify(Level::Error, error.to_string()),
         },
     }

@@ -1,13 +1,13 @@
 //! The devices of the window: how they are opened, and how the window presents.
 
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use anyhow::Context as _;
 use pollster::FutureExt as _;
 
 use crate::gpu::{
     Gpu,
-    device::{self, AdapterChoice},
+    device::{self, AdapterChoice, OpenError},
 };
 
 /// How the window and its tests open their device: the chosen adapter, the features and limits that
@@ -45,8 +45,15 @@ fn select(
         .collect();
     device::choose(choice, &names)
         .map(|index| suitable[index].clone())
-        .map_err(|error| error.to_string())
+        .map_err(|error| {
+            let sentence = error.to_string();
+            *REFUSED.lock().unwrap_or_else(PoisonError::into_inner) = Some(error);
+            sentence
+        })
 }
+
+/// Why no adapter was chosen, which eframe passes on as a text alone.
+pub static REFUSED: Mutex<Option<OpenError>> = Mutex::new(None);
 
 /// The window's devices, for the kernels; `devices` if they are known from another window on the
 /// same device.

@@ -1,9 +1,47 @@
 //! The icons of the lab, drawn with lines, so that they look the same with every font.
 
-use egui::{self, Color32, Pos2, Rect, Response, Role, Sense, Shape, Stroke, Ui, vec2};
+use egui::{
+    self, Color32, ColorImage, Pos2, Rect, Response, Role, Sense, Shape, Stroke, Ui,
+    epaint::text::{GlyphBitmap, GlyphRasterizer, GlyphRasterizerRequest, RasterizedGlyph},
+    vec2,
+};
 
 use super::{panel::describe_chosen, theme};
 use crate::app::editing::key_id::Keying;
+
+/// Draws the sign of copying in egui's color picker where no font has it.
+pub fn draw_copy_sign(ctx: &egui::Context) {
+    ctx.add_glyph_rasterizer(GlyphRasterizer::new("copy sign", copy_sign));
+}
+
+/// A sheet over another.
+fn copy_sign(asked: &GlyphRasterizerRequest<'_>) -> Option<RasterizedGlyph> {
+    let side = asked.font_size_px.max(6.0) as usize;
+    let (sheet, line) = (side * 3 / 4, 1 + side / 24);
+    // Whether a pixel of a sheet is of its edge.
+    let ink = |at: [usize; 2]| {
+        let is_edge = |x: &usize| *x < line || *x + line >= sheet;
+        at.iter()
+            .all(|x| *x < sheet)
+            .then(|| at.iter().any(is_edge))
+    };
+    let color = |i: usize| {
+        let at = [i % side, i / side];
+        match ink(at.map(|x| x.wrapping_sub(side - sheet))).or_else(|| ink(at)) {
+            Some(true) => Color32::WHITE,
+            _ => Color32::TRANSPARENT,
+        }
+    };
+    let is_asked = asked.cluster == "\u{1f4cb}";
+    is_asked.then(|| RasterizedGlyph {
+        bitmap: GlyphBitmap {
+            image: ColorImage::new([side; 2], (0..side * side).map(color).collect()),
+            offset_px: vec2(0.0, -0.9 * side as f32),
+            is_color: false,
+        },
+        advance_px: side as f32,
+    })
+}
 
 /// What an icon shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

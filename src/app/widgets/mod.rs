@@ -11,3 +11,9 @@ pub mod size;
 pub mod text;
 pub mod theme;
 pub mod tile;
+
+/// Their style, and the sign that fonts may lack.
+pub fn apply(ctx: &egui::Context) {
+    theme::apply(ctx);
+    icons::draw_copy_sign(ctx);
+}

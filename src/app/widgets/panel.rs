@@ -2,7 +2,9 @@
 
 use egui::{
     Align, Align2, Button, Context, FontId, Image, Layout, Modal, Painter, Pos2, Rect, Response,
-    Role, TextureHandle, Ui, WidgetInfo, Window, vec2,
+    Role, TextureHandle, Ui, WidgetInfo, Window,
+    text::{LayoutJob, TextWrapping},
+    vec2,
 };
 
 use super::theme;
@@ -88,7 +90,10 @@ pub fn picture_ui(ui: &Ui, rect: Rect, picture: Option<&TextureHandle>) {
 /// the plate is.
 pub fn plate(painter: &Painter, at: Pos2, align: Align2, within: Rect, text: &str) -> Rect {
     let ink = theme::text_strong();
-    let galley = painter.layout_no_wrap(text.to_owned(), FontId::proportional(12.0), ink);
+    let font = FontId::proportional(12.0);
+    let mut job = LayoutJob::simple_singleline(text.to_owned(), font, ink);
+    job.wrap = TextWrapping::truncate_at_width(within.width() - 12.0);
+    let galley = painter.layout_job(job);
     let size = galley.size() + vec2(12.0, 6.0);
     let min = align.anchor_size(at, size).min;
     let plate = Rect::from_min_size(min.min(within.max - size).max(within.min), size);

@@ -45,7 +45,7 @@ use crate::{
             state::{Clipboard, Closing, State},
             ui_frames::UiFrames,
         },
-        widgets::{panel::is_phone, theme},
+        widgets::{self, panel::is_phone, theme},
     },
     effect_files::has_f32_error,
     gpu::device::AdapterChoice,
@@ -127,7 +127,7 @@ impl App {
     pub fn new(cc: &eframe::CreationContext<'_>, options: Options) -> anyhow::Result<Self> {
         host::shaders::choose(None);
         let ctx = &cc.egui_ctx;
-        theme::apply(ctx);
+        widgets::apply(ctx);
         ctx.add_plugin(PointerFrames::default());
         ctx.add_plugin(UiFrames::default());
         ctx.options_mut(|options| options.zoom_with_keyboard = false); // The table of actions has these keys.
@@ -308,8 +308,7 @@ impl App {
         }
         let before_s = self.played_at_s.replace(*now_s);
         session.advance(before_s.map_or(0.0, |before_s| *now_s - before_s));
-        // A software adapter draws the window on the processor that draws the picture, so the
-        // window does not run ahead of it. A finished picture repaints.
+        // A software adapter draws on the processor of the window. A finished picture repaints.
         if screen.gpu.summary.software && screen.is_waiting() {
             ctx.request_repaint_after_secs(PLAY_STEP_S);
         } else {
@@ -590,7 +589,8 @@ impl eframe::App for App {
         self.apply();
         escape(self, self.was_typing);
         if !self.panels.has_dialog() && !self.panels.settings.takes_key() {
-            input::shortcuts(&ctx, &self.state, &mut self.typing, &self.commands);
+            let given = (&self.state, self.panels.film.is_filled_in());
+            input::shortcuts(&ctx, given, &mut self.typing, &self.commands);
             self.apply();
         }
         let is_awaited =

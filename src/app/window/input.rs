@@ -19,10 +19,15 @@ use crate::app::{
 };
 
 /// Sends the actions whose shortcuts were pressed, in the order of the keys. Shortcuts without Ctrl
-/// do nothing while a widget has the focus or the camera flies; those with Ctrl, but for the
-/// palette's, do nothing while text is typed. A search keeps only what it can use itself. What is
+/// do nothing while a widget has the focus, the camera flies or a form `is_filled_in`; those with Ctrl,
+/// but for the palette's, do nothing while text is typed. A search keeps only what it can use itself. What is
 /// typed after a key that opens a text field is held for it.
-pub fn shortcuts(ctx: &egui::Context, state: &State, held: &mut HeldTyping, commands: &Commands) {
+pub fn shortcuts(
+    ctx: &egui::Context,
+    (state, is_filled_in): (&State, bool),
+    held: &mut HeldTyping,
+    commands: &Commands,
+) {
     let is_typing = ctx.text_edit_focused();
     let is_focused = ctx.egui_wants_keyboard_input();
     let is_searching = is_searching(ctx);
@@ -30,7 +35,7 @@ pub fn shortcuts(ctx: &egui::Context, state: &State, held: &mut HeldTyping, comm
     let is_allowed = |k: &KeyboardShortcut| match k.modifiers.command {
         _ if is_searching => !edits_text(k),
         true => !is_typing,
-        false => !is_focused && !is_flying,
+        false => !(is_focused || is_flying || is_filled_in),
     };
     let mut index = 0;
     while let Some(event) = ctx.input(|i| i.events.get(index).cloned()) {

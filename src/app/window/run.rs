@@ -8,7 +8,10 @@ use crate::{
     app::{
         files::recovery::recovery_path,
         settings::{WindowSize, keeper::window_size},
-        shell::{device::wgpu_setup, log::Level},
+        shell::{
+            device::{REFUSED, wgpu_setup},
+            log::Level,
+        },
     },
     gpu::device::AdapterChoice,
 };
@@ -73,6 +76,10 @@ pub fn run(options: Options) -> anyhow::Result<()> {
             Box::new(create),
         );
         if !loss.is_set() {
+            let refused = REFUSED.lock().ok().and_then(|mut refused| refused.take());
+            if let (Err(_), Some(refused)) = (&closed, refused) {
+                return Err(refused.into());
+            }
             return closed.map_err(|error| match error {
                 eframe::Error::WinitEventLoop(_) | eframe::Error::Winit(_) => {
                     anyhow::anyhow!("{}", without_display())

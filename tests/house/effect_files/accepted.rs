@@ -165,6 +165,9 @@ fn loops_end() {
     for statement in statements {
         let effect = accepted(&with_statements(statement));
         validates(vec![effect.clone()]);
+        let source = effect.source.as_ref().expect("a file");
+        let is_told = statement.contains("loop") && !statement.contains("break");
+        assert_eq!(source.has_endless_loop, is_told, "{statement}");
         let surface =
             super::super::effect_inputs::surface(&mut rasterlab_fuzz::stress::scenes::Rng(1));
         let apply = effect.hooks.surface.as_ref().expect("a surface effect");

@@ -103,6 +103,25 @@ fn a_foot_tells_the_axis_where_the_place_does_not() {
 }
 
 #[test]
+fn heights_of_a_terrain_and_points_of_a_scanner_are_along_z() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let hill = "f 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\n";
+    let sign = "f 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\nf 3 2 1\nf 4 3 1\n";
+    for (faces, up) in [(hill, UpAxis::Z), (sign, UpAxis::Y)] {
+        let text = format!("v -5 -5 0\nv 5 -5 0\nv 5 5 0\nv -5 5 0\nv 0 0 1\n{faces}");
+        let path = written(folder.path(), "hill.obj", &text);
+        assert_eq!(opened(&path).0.preset.parts.up, up, "{text}");
+    }
+    let head = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nend_header\n";
+    let path = written(
+        folder.path(),
+        "room.ply",
+        format!("{head}0 0 0\n6 5 0\n2 3 2\n"),
+    );
+    assert_eq!(opened(&path).0.preset.parts.up, UpAxis::Z);
+}
+
+#[test]
 fn a_flat_model_is_looked_at_from_higher() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let down = |height: f64| {

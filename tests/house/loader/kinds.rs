@@ -136,6 +136,7 @@ fn a_file_of_another_kind_says_so() {
         ("\n<!DOCTYPE html><html></html>", "HTML page"),
         ("PK\x03\x04....", "zip archive"),
         ("", "it is empty"),
+        ("garbage", "neither with \"glTF\" nor with the {"),
     ] {
         let error = load(bytes.as_bytes()).expect_err(sentence).to_string();
         assert!(

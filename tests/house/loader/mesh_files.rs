@@ -474,6 +474,19 @@ fn a_variant_colors_the_points_of_a_cloud() {
         assert_eq!(scene.variants, ["color", "intensity", "class"]);
         assert_eq!(gray(&scene), is_gray, "{shown}");
     }
+    // Colors that are all black say nothing.
+    let black: Vec<u8> = survey
+        .iter()
+        .map(|byte| if *byte == 200 { 0 } else { *byte })
+        .collect();
+    let scene = read(load_las_shown, &black, "");
+    assert_eq!(scene.variants, ["class"]);
+    assert!(
+        scene.notes[0].contains("class is shown"),
+        "{:?}",
+        scene.notes
+    );
+    assert_ne!(clouds(&scene)[0], clouds(&scene)[1]);
     let by_class = clouds(&read(load_las_shown, &survey, "class"));
     assert!(by_class[0] != by_class[1] && by_class[1] == by_class[2]);
     for (shown, is_gray) in [("", false), ("intensity", true)] {
@@ -577,7 +590,7 @@ fn ply_is_read_by_what_its_header_says() {
         );
         // Of a row that is cut off nothing is drawn.
         bytes.pop();
-        let sentence = "there is nothing to draw: the file ends after 0 of 1 rows of \"face\"; what is there is drawn; fetch or export it again";
+        let sentence = "there is nothing to draw: the file ends after 0 of 1 rows of \"face\"; fetch or export it again";
         refused(load_ply, &bytes, sentence);
     }
 }

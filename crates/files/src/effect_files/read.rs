@@ -11,6 +11,7 @@ use super::{
     declaration::{self, Author},
     error::{EffectError, Text},
     images, picture_twin, rewrite,
+    tokens::Token,
     twin::{self, Function},
     words,
 };
@@ -187,6 +188,7 @@ fn read_anew(
         stem: stem.into(),
         written: written.into(),
         linked: rewritten.text.clone(),
+        has_endless_loop: has_endless_loop(&declaration.tokens),
         functions: rewritten.functions.clone(),
         images: images::read(&text, named, folder)?,
     });
@@ -299,6 +301,22 @@ fn read_anew(
     let has_color = source.functions.surface.is_some() || source.functions.image.is_some();
     hooks.has_steps = has_color && !declaration.is_smooth;
     Ok(effect)
+}
+
+/// Is there a `loop` without `break` and `return`?
+fn has_endless_loop(tokens: &[Token<'_>]) -> bool {
+    let is_endless = |at: usize| {
+        let mut depth = 0;
+        let body = tokens[at + 1..].iter().take_while(|token| {
+            depth += i32::from(token.text == "{") - i32::from(token.text == "}");
+            depth > 0
+        });
+        !body
+            .into_iter()
+            .any(|token| ["break", "return"].contains(&token.text))
+    };
+    let mut loops = (0..tokens.len()).filter(|at| tokens[*at].text == "loop");
+    loops.any(|at| tokens.get(at + 1).is_some_and(|next| next.text == "{") && is_endless(at))
 }
 
 /// The text of a file.

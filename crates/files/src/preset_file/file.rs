@@ -131,9 +131,9 @@ impl PresetFile {
         }
     }
 
-    /// Did it come as a line of text, so that no file has it?
+    /// Did it, or its look, come as a text, so that no file has it?
     pub fn is_pasted(&self) -> bool {
-        self.path.is_none() && self.id == PASTED
+        self.path.is_none() && self.look.as_ref().map_or(&self.id, |look| &look.id) == PASTED
     }
 
     /// The name, or the id of a preset without a name.

@@ -5,7 +5,7 @@ use std::path::Path;
 use crate::{
     host::model,
     scene::{
-        Scene, UpAxis,
+        Primitive, Scene, UpAxis,
         gltf::{self, LoadError},
         memory::MemoryBudget,
         mesh_files::{self, LoadCloud, LoadModel},
@@ -129,8 +129,12 @@ impl ModelFormat {
             Reader::Mesh(_, usual) | Reader::Cloud(_, usual) => UpAxis::guessed(
                 &scene.bounds(),
                 [&*scene.name].into_iter().chain(names),
-                || scene.foot_axis(),
-                usual,
+                (|| scene.height_axis(), || scene.foot_axis()),
+                // Points alone come from a scanner, whose files have z up.
+                match scene.primitives.iter().all(Primitive::is_points) {
+                    true => UpAxis::Z,
+                    false => usual,
+                },
             ),
         }
     }

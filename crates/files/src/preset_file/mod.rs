@@ -66,4 +66,4 @@ pub use picture::{
     preset_from_png,
 };
 pub use scene::{SceneError, check_model, load_scene, load_scene_beside, scene_bounds};
-pub use share::{from_line, is_preset_text, to_line};
+pub use share::{from_line, is_look_text, is_preset_text, to_line};

@@ -10,7 +10,9 @@ use super::{
     error::PresetError,
     file::{PresetFile, stem, to_shared_toml},
     frame_status::{ADAPTER, FINGERPRINT, is_damaged},
+    gallery::plain,
     load::{MAX_BYTES, parse_file, read_capped},
+    look::Look,
 };
 use crate::{frame::Frame, host::stays_inside, params::legible_line, preset::SceneSource};
 
@@ -166,6 +168,13 @@ pub fn load_picture(path: &Path) -> Result<PresetFile, PresetError> {
         ..preset_from_png(&read_capped(path, MAX_FILE_BYTES)?, &file)?
     }
     .held_to_folder();
+    // A picture names no look: the plain one is known by what it does.
+    let (own, plain) = (&preset_file.preset, plain());
+    let is_plain = own.stack == plain.preset.stack
+        && own.animation == plain.preset.animation
+        && own.ground == plain.preset.ground
+        && own.room == plain.preset.room;
+    preset_file.look = is_plain.then(|| Look::of(plain));
     let beside = preset_file
         .outside_model
         .as_deref()

@@ -45,6 +45,12 @@ fn is_file_text(text: &str) -> bool {
     has_key && !text.contains(PREFIX)
 }
 
+/// Is `pasted`, which was read from `text`, a look alone: the text of a file that names no scene? A shared line leaves
+/// out a scene that is the default.
+pub fn is_look_text(text: &str, pasted: &PresetFile) -> bool {
+    is_file_text(text) && !pasted.document.contains_key("scene")
+}
+
 /// Reads a pasted line, the link of a page that carries one, or the text of a preset's file; white space from a mail or
 /// chat is forgiven. A model outside of the current folder is not its scene before [`PresetFile::with_outside_model`].
 pub fn from_line(line: &str) -> Result<PresetFile, PresetError> {

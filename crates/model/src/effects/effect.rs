@@ -251,6 +251,8 @@ pub struct EffectSource {
     pub written: String,
     /// The text that is linked: without attributes, its names made unique, its loops bounded.
     pub linked: String,
+    /// A loop has neither `break` nor `return`.
+    pub has_endless_loop: bool,
     /// The function on each hook.
     pub functions: HookFunctions,
     /// The pictures that it takes as inputs, in the order of the struct.

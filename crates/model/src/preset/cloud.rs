@@ -44,8 +44,18 @@ impl Preset {
 }
 
 impl Effect {
-    /// Why it shows nothing of its own on a scene that has only points or lines: a sentence.
+    /// Why it may show nothing of its own: one of its loops never ends, or the scene has only points or
+    /// lines. A sentence.
     pub fn why_idle(&self, scene: &Scene) -> Option<&'static str> {
+        if self
+            .source
+            .as_ref()
+            .is_some_and(|source| source.has_endless_loop)
+        {
+            return Some(
+                "A loop of it has neither break nor return: it is ended after 4096 turns.",
+            );
+        }
         let drawn = spread(scene)?;
         let has_lines = drawn.iter().any(|p| p.topology == Topology::Lines);
         let has_normals = drawn.iter().any(|p| p.normals.stride > 0);

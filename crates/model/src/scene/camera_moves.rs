@@ -120,9 +120,13 @@ pub fn zoom(camera: &mut Camera, factor: f64) {
     }
 }
 
-/// Looks at the target along `direction` from the same distance.
-pub fn look_along(camera: &mut Camera, direction: DVec3) {
+/// Looks at the target along `direction` from the same distance; where it does already, from the other
+/// side.
+pub fn look_along(camera: &mut Camera, mut direction: DVec3) {
     let distance = distance(camera);
+    if camera.forward().dot(direction) > 1.0 - 1e-9 {
+        direction = -direction;
+    }
     camera.up = if direction.y.abs() > 0.999 {
         DVec3::NEG_Z
     } else {
@@ -236,5 +240,11 @@ mod tests {
         look_along(&mut moved, TOP);
         let (right, up) = axes(&moved);
         assert!((right - DVec3::X).length() < 1e-12 && (up - DVec3::NEG_Z).length() < 1e-12);
+        for direction in [FRONT, SIDE, TOP] {
+            for side in [1.0, -1.0] {
+                look_along(&mut moved, direction);
+                assert!((moved.forward() - side * direction).length() < 1e-12);
+            }
+        }
     }
 }

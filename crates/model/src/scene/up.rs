@@ -65,17 +65,17 @@ impl UpAxis {
     }
 
     /// The axis that is up in a file of meshes, which says nothing of it. `bounds` is its box,
-    /// `names` are those of the file and its parts, `foot` is [`Scene::foot_axis`], and `usual` is the
-    /// axis of the format.
+    /// `names` are those of the file and its parts, `heights` is [`Scene::height_axis`], `foot` is
+    /// [`Scene::foot_axis`], and `usual` is the axis of the format.
     ///
     /// The first of these that holds decides: a name says `y-up` or `z-up`; the box lies far away along
-    /// two axes and not along the third, as coordinates of a map do; the model stands on the plane
+    /// two axes and not along the third, as coordinates of a map do; it is a terrain; the model stands on the plane
     /// through the origin and rises above it by at least a quarter of its size; it has a foot. Else it
     /// is `usual`.
     pub fn guessed<'a>(
         bounds: &Bounds,
         names: impl IntoIterator<Item = &'a str>,
-        foot: impl FnOnce() -> Option<Self>,
+        (heights, foot): (impl FnOnce() -> Option<Self>, impl FnOnce() -> Option<Self>),
         usual: Self,
     ) -> Self {
         for name in names {
@@ -103,6 +103,9 @@ impl UpAxis {
             [true, false, true] => return Self::Y,
             _ => {}
         }
+        if let Some(axis) = heights() {
+            return axis;
+        }
         let stands =
             |axis: usize| bounds.min[axis].abs() <= FLAT * size && extent[axis] >= RISES * size;
         match (stands(1), stands(2)) {
@@ -126,7 +129,45 @@ const FLAT: f64 = 1e-3;
 /// of the box.
 const FOOT: [f64; 2] = [0.25, 0.05];
 
+/// How often the faces of a terrain cover its box, seen from above.
+const COVERS: std::ops::RangeInclusive<f64> = 0.9..=1.1;
+
 impl Scene {
+    /// The one of +y and +z along which the model has heights, as a terrain: it is low, and seen along
+    /// it the faces show one side and cover the box once.
+    pub fn height_axis(&self) -> Option<UpAxis> {
+        let extent = self.bounds().max - self.bounds().min;
+        let heights = FLAT * extent.max_element()..RISES * extent.max_element();
+        if ![extent.y, extent.z].iter().any(|e| heights.contains(e)) {
+            return None;
+        }
+        let [mut sum, mut whole] = [DVec3::ZERO; 2];
+        for instance in &self.instances {
+            let primitive = &self.primitives[instance.primitive];
+            if primitive.is_points() || primitive.is_lines() {
+                return None;
+            }
+            for t in 0..primitive.triangle_count() {
+                let [a, b, c] = primitive.corners(self, t).map(|vertex| {
+                    let position = DVec3::from(primitive.position(self, vertex).map(f64::from));
+                    instance.world_from_object.transform_point3(position)
+                });
+                let area = (b - a).cross(c - a) / 2.0;
+                (sum, whole) = (sum + area, whole + area.abs());
+            }
+        }
+        let is_height = |axis: usize| {
+            let covered =
+                [sum.abs(), whole].map(|areas| areas[axis] / (extent.x * extent[3 - axis]));
+            heights.contains(&extent[axis]) && covered.iter().all(|times| COVERS.contains(times))
+        };
+        match [is_height(1), is_height(2)] {
+            [true, _] => Some(UpAxis::Y),
+            [_, true] => Some(UpAxis::Z),
+            _ => None,
+        }
+    }
+
     /// The one of +y and +z along which the model has a foot: its vertices in the plane at the lower
     /// end span much of the box, and at least twice as much as those at the upper end, as of a pyramid,
     /// a chair, or a statue on its base. None if it has no foot, or something like it along both.
@@ -293,7 +334,7 @@ mod tests {
                 max: DVec3::new(number(3), number(4), number(5)),
             };
             let name = words[8..].join(" ");
-            let guessed = UpAxis::guessed(&bounds, [&*name], || None, axis(words[6]));
+            let guessed = UpAxis::guessed(&bounds, [&*name], (|| None, || None), axis(words[6]));
             assert_eq!(guessed, axis(words[7]), "{row}");
         }
     }

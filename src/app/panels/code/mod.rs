@@ -123,9 +123,9 @@ impl CodePanel {
 impl Panel for CodePanel {
     fn ui(&mut self, ui: &mut Ui, state: &State, commands: &Commands) {
         let Some(open) = &mut self.open else { return };
-        let closes = head_ui(ui, open, commands);
+        let mut closes = head_ui(ui, open, commands);
         if open.asks {
-            question_ui(ui, open, commands);
+            closes |= question_ui(ui, open, commands);
         }
         if let Some(error) = &open.error {
             let line = error
@@ -136,7 +136,7 @@ impl Panel for CodePanel {
         }
         text_ui(ui, open, state);
         let waits_s = open.changed_s + PAUSE_S - state.now_s;
-        if open.text != open.tried && waits_s <= 0.0 {
+        if open.text != open.tried && (waits_s <= 0.0 || closes) {
             open.tried.clone_from(&open.text);
             let (path, text) = (open.path.clone(), open.text.clone());
             commands.run(|app| app.state.jobs.try_code(path, text));
@@ -183,8 +183,9 @@ fn save(open: &mut Open, commands: &Commands) {
     commands.run(|app| app.state.jobs.save_code(path, text));
 }
 
-/// What becomes of changes that are not saved. Discarded, the file's text is compiled again.
-fn question_ui(ui: &mut Ui, open: &mut Open, commands: &Commands) {
+/// What becomes of changes that are not saved. Discarded, the file's text is compiled again. Returns
+/// whether they were: then the text is closed.
+fn question_ui(ui: &mut Ui, open: &mut Open, commands: &Commands) -> bool {
     theme::notice(
         ui,
         theme::amber(),
@@ -194,14 +195,16 @@ fn question_ui(ui: &mut Ui, open: &mut Open, commands: &Commands) {
         if ui.button("Save them").clicked() {
             save(open, commands);
         }
-        if ui.button("Discard them").clicked() {
+        let discards = ui.button("Discard them").clicked();
+        if discards {
             open.text.clone_from(&open.saved);
+        }
+        if discards || ui.button("Go on").clicked() {
             open.asks = false;
         }
-        if ui.button("Go on").clicked() {
-            open.asks = false;
-        }
-    });
+        discards
+    })
+    .inner
 }
 
 fn text_id() -> egui::Id {
@@ -218,7 +221,9 @@ fn text_ui(ui: &mut Ui, open: &mut Open, state: &State) {
         let job = highlight::layout(text.as_str(), &font);
         ui.fonts_mut(|fonts| fonts.layout_job(job))
     };
-    ScrollArea::both().auto_shrink(false).show(ui, |ui| {
+    // Each file is scrolled by itself, and begins at its top left.
+    let scroll = ScrollArea::both().id_salt(&open.path).auto_shrink(false);
+    scroll.show(ui, |ui| {
         let edit = TextEdit::multiline(&mut open.text)
             .id(text_id())
             .font(TextStyle::Monospace)

@@ -2,7 +2,7 @@
 
 pub(super) mod buttons;
 mod path;
-mod places;
+pub mod places;
 mod purpose;
 mod questions;
 

@@ -135,6 +135,11 @@ impl PathDialog {
             return false;
         }
         let path = self.path();
+        if self.names_missing_file() {
+            let text = "does not exist. Go on typing, or choose from the list.";
+            self.error = Some(format!("{} {text}", path.display()));
+            return false;
+        }
         if self.purpose != Purpose::Open {
             let is_unnamed =
                 completion::name_of(typed).is_empty() || completion::expand_home(typed).is_dir();
@@ -169,6 +174,18 @@ impl PathDialog {
             Purpose::Sheet => commands.run(|app| save_sheet(app, path)),
         }
         true
+    }
+
+    /// Is a file to be opened that is not there? What is no path may name a preset.
+    fn names_missing_file(&self) -> bool {
+        let path = self.path();
+        let extension = path.extension().unwrap_or_default();
+        let mut known = system_dialog::extensions(self.purpose).into_iter();
+        self.purpose == Purpose::Open
+            && (self.text.contains(is_separator)
+                || known.any(|e| extension.eq_ignore_ascii_case(e)))
+            && !self.text.trim_start().starts_with("builtin:")
+            && !path.exists()
     }
 
     /// Takes the contents of a folder.
@@ -374,9 +391,11 @@ fn field_ui(ui: &mut Ui, dialog: &mut PathDialog, rows: &[Row]) -> bool {
         place_cursor(ui.ctx(), id, dialog);
     }
     entered
-        && match dialog.chosen.and_then(|at| rows.get(at)) {
-            Some(row) => dialog.take(row),
-            None => !enter_folder(dialog),
+        && match (dialog.chosen.and_then(|at| rows.get(at)), rows) {
+            (Some(row), _) => dialog.take(row),
+            // The only one that can be meant.
+            (None, [row]) if dialog.names_missing_file() => dialog.take(row),
+            _ => !enter_folder(dialog),
         }
 }
 
@@ -584,6 +603,20 @@ fn row_ui(ui: &mut Ui, row: &Row, is_chosen: bool, is_missing: bool) -> egui::Re
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_file_that_is_not_there_is_told_beside_the_field() {
+        for (text, is_taken) in [("/nowhere/fo", false), ("fo.glb", false), ("fo", true)] {
+            let mut dialog = PathDialog::new(Purpose::Open, text.into(), [1, 1]);
+            assert_eq!(
+                dialog.accept(None, &Commands::default()),
+                is_taken,
+                "{text}"
+            );
+            let error = dialog.error.unwrap_or_default();
+            assert_eq!(error.contains("does not exist"), !is_taken, "{text}");
+        }
+    }
 
     #[test]
     fn a_folder_is_no_name_to_save_under() {

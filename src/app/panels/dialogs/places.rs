@@ -9,7 +9,8 @@ use crate::app::{settings::recents::Recents, widgets::text::cut_middle};
 /// Folders that are offered, at most.
 const PLACES: usize = 5;
 
-/// The home folder and those of recent files, newest first, each with its name.
+/// The home folder and those of recent files, newest first, each with its name; the parent stands before
+/// names that are the same.
 fn places(recents: &Recents) -> Vec<(String, PathBuf)> {
     let mut places: Vec<(String, PathBuf)> = std::env::home_dir()
         .map(|home| ("Home".to_owned(), home))
@@ -19,6 +20,15 @@ fn places(recents: &Recents) -> Vec<(String, PathBuf)> {
         let name = folder.file_name().unwrap_or(folder.as_os_str());
         if places.len() < PLACES && places.iter().all(|(_, known)| known != folder) {
             places.push((name.to_string_lossy().into_owned(), folder.to_owned()));
+        }
+    }
+    let names: Vec<String> = places.iter().map(|(name, _)| name.clone()).collect();
+    for (name, folder) in &mut places {
+        let parent = folder.parent().and_then(Path::file_name);
+        if let Some(parent) = parent
+            && names.iter().filter(|other| *other == name).count() > 1
+        {
+            *name = format!("{}/{name}", parent.to_string_lossy());
         }
     }
     places
@@ -51,5 +61,8 @@ mod tests {
         let names: Vec<String> = places(&recents).into_iter().map(|(name, _)| name).collect();
         assert_eq!(names[names.len() - 2..], ["a", "b"]);
         assert!(names.len() < 4, "{names:?}");
+        let recents: Recents = ["/a/models/x.glb", "/b/models/y.glb"].iter().collect();
+        let names: Vec<String> = places(&recents).into_iter().map(|(name, _)| name).collect();
+        assert_eq!(names[names.len() - 2..], ["a/models", "b/models"]);
     }
 }

@@ -62,7 +62,8 @@ pub fn scenes_ui(ui: &mut Ui, state: &State, commands: &Commands) {
 /// The scene that is shown: name, counts and warnings.
 fn shown_ui(ui: &mut Ui, session: &Session) {
     let source = match &session.preset().scene {
-        SceneSource::Builtin(query) => query.clone(),
+        // Its parameters have fields below.
+        SceneSource::Builtin(_) => session.preset_file.scene_name(),
         SceneSource::File(path) => with_own_paths(path.display().to_string()),
     };
     // A letter is some 8 points wide.

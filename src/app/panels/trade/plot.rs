@@ -183,7 +183,7 @@ pub fn plot_ui(ui: &mut Ui, shown: &Shown<'_>) -> Option<usize> {
     );
     let standings = standings(shown.points, shown.metric);
     let (frame, true_places) = lines_ui(ui, shown.metric, &plotted, &span, &standings);
-    let places = spread(&true_places);
+    let places = spread(&true_places, frame);
     let painter = ui.painter_at(frame);
     let mut clicked = None;
     for ((p, &place), &true_place) in plotted.iter().zip(&places).zip(&true_places) {
@@ -323,8 +323,8 @@ fn point_ui(
 }
 
 /// Where points are shown that stand at `places`: those that would lie over each other are pushed
-/// apart, so that each can be clicked. The first of them keeps its place.
-fn spread(places: &[Pos2]) -> Vec<Pos2> {
+/// apart inside `frame`, so that each can be clicked. The first of them keeps its place.
+fn spread(places: &[Pos2], frame: Rect) -> Vec<Pos2> {
     let mut shown: Vec<Pos2> = Vec::with_capacity(places.len());
     for &place in places {
         // Rings round the place, each with room for one more than the last; the first free place is
@@ -332,16 +332,15 @@ fn spread(places: &[Pos2]) -> Vec<Pos2> {
         let ring = |ring: u32| {
             (0..6 * ring).map(move |k| (ring, std::f32::consts::TAU * k as f32 / (6 * ring) as f32))
         };
-        let mut around = (1..)
+        let around = (1..24)
             .flat_map(ring)
             .map(|(ring, angle)| place + ring as f32 * APART * Vec2::angled(angle));
         let is_free = |at: &Pos2| {
-            shown
-                .iter()
-                .all(|other| other.distance(*at) >= 0.98 * APART)
+            let is_apart = |other: &Pos2| other.distance(*at) >= 0.98 * APART;
+            frame.shrink(APART / 2.0).contains(*at) && shown.iter().all(is_apart)
         };
-        let free = std::iter::once(place).chain(around.by_ref()).find(is_free);
-        shown.extend(free);
+        let free = std::iter::once(place).chain(around).find(is_free);
+        shown.push(free.unwrap_or(place));
     }
     shown
 }
@@ -423,13 +422,15 @@ mod tests {
             vec![Pos2::new(400.0, 30.0), Pos2::new(405.0, 31.0)],
         ]
         .concat();
-        let shown = spread(&places);
+        let frame = Rect::from_min_max(Pos2::new(0.0, 0.0), Pos2::new(420.0, 38.0));
+        let shown = spread(&places, frame);
         assert_eq!(
             (shown.len(), shown[0], shown[20]),
             (22, places[0], places[20])
         );
         for (at, place) in shown.iter().enumerate() {
-            assert!(place.distance(places[at]) <= 4.0 * APART, "{at}: {place}");
+            assert!(place.distance(places[at]) <= 5.0 * APART, "{at}: {place}");
+            assert!(frame.contains(*place), "{at}: {place}");
             for other in &shown[..at] {
                 assert!(
                     place.distance(*other) >= 0.9 * APART,

@@ -4,7 +4,7 @@ use egui::{self, Align, Color32, Layout, Rect, RichText, Ui, pos2, vec2};
 
 use super::{
     compare::{Compare, Mode},
-    compare_bar::UP_TO_LABELS,
+    compare_bar::{is_narrow, up_to_labels},
 };
 use crate::{
     app::{
@@ -24,8 +24,10 @@ use crate::{
     preset::{Animation, Preset},
 };
 
-/// Size of a plate, points.
+/// Size of a plate, points; in a narrow picture both have this height together.
 const PLATE: egui::Vec2 = vec2(312.0, 54.0);
+/// Height of a plate of one line.
+const LINE: f32 = 25.0;
 /// Height of a label with a gap, points.
 const LABEL: f32 = 26.0;
 
@@ -38,29 +40,36 @@ pub fn plates_ui(
     rect: Rect,
     mode: Mode,
 ) -> Rect {
-    let size = vec2(((rect.width() - 36.0) / 2.0).min(PLATE.x), PLATE.y);
-    let corner = rect.left_bottom() + vec2(12.0, -12.0 - size.y);
-    let builder =
-        |x: f32| egui::UiBuilder::new().max_rect(Rect::from_min_size(pos2(x, corner.y), size));
+    let half = ((rect.width() - 36.0) / 2.0).min(PLATE.x);
+    let corner = rect.left_bottom() + vec2(12.0, -12.0 - PLATE.y);
+    let mut left = rect.right() - 12.0 - half;
+    let (size, second) = match is_narrow(rect) {
+        true => (
+            vec2(rect.width() - 24.0, LINE),
+            pos2(corner.x, corner.y + PLATE.y - LINE),
+        ),
+        false => (vec2(half, PLATE.y), pos2(left, corner.y)),
+    };
+    let builder = |at| egui::UiBuilder::new().max_rect(Rect::from_min_size(at, size));
     if mode != Mode::B {
         plate_a_ui(
-            &mut ui.new_child(builder(corner.x).id_salt("A")),
+            &mut ui.new_child(builder(corner).id_salt("A")),
             compare,
             (state, commands),
         );
     }
-    let mut left = rect.left();
-    if mode != Mode::A {
-        left = rect.right() - 12.0 - size.x;
+    if mode == Mode::A {
+        left = rect.left();
+    } else {
         plate_b_ui(
-            &mut ui.new_child(builder(left).id_salt("B")),
+            &mut ui.new_child(builder(second).id_salt("B")),
             compare,
             state,
         );
     }
     Rect::from_min_max(
         pos2(left - 12.0, rect.top()),
-        pos2(rect.right(), rect.bottom() - UP_TO_LABELS - LABEL),
+        pos2(rect.right(), rect.bottom() - up_to_labels(rect) - LABEL),
     )
 }
 
@@ -102,9 +111,11 @@ fn plate_a_ui(ui: &mut Ui, compare: &mut Compare, (state, commands): (&State, &C
                 };
                 (compare.kept, compare.toward) = (Some(Box::new(kept)), 0.0);
             }
+            let keys = if is_line(ui) { "Key" } else { "Key A to B" };
             if let Some(kept) = &compare.kept
                 && ui
-                    .small_button("Key A to B")
+                    .small_button(keys)
+                    .accessible_name("Key A to B")
                     .on_hover_text(
                         "Numbers and colors that differ get keyframes: A's at the begin of the clock, B's at its end",
                     )
@@ -149,11 +160,16 @@ fn plate_b_ui(ui: &mut Ui, compare: &mut Compare, state: &State) {
     );
 }
 
-/// Width below which a plate has the time in place of the name, which stands in the picture, too,
-/// points.
-const NARROW: f32 = 200.0;
+/// Width that an error takes at least, points.
+const LEAST_ERROR: f32 = 60.0;
 
-/// Title and buttons of a side, and below them its time and its error.
+/// Has a plate only one line?
+fn is_line(ui: &Ui) -> bool {
+    ui.max_rect().height() < PLATE.y
+}
+
+/// Title and buttons of a side, and below them its time and its error. On one line the time stands in
+/// place of the name, which the picture has, too.
 fn plate(
     ui: &mut Ui,
     title: &str,
@@ -161,13 +177,17 @@ fn plate(
     ((time, time_hint), (error, color, hint)): ((&str, &str), (&str, Color32, &str)),
     buttons: impl FnOnce(&mut Ui),
 ) {
-    let is_narrow = ui.available_width() < NARROW;
+    let is_narrow = is_line(ui);
     let title = match title.split_once(" · ") {
         Some((side, _)) if is_narrow => format!("{side} · {time}"),
         _ => title.to_owned(),
     };
+    let error_ui = |ui: &mut Ui| {
+        ui.add(egui::Label::new(RichText::new(error).size(12.0).color(color)).truncate())
+            .on_hover_text(hint);
+    };
     theme::toast_frame(theme::line())
-        .inner_margin(egui::Margin::symmetric(10, 6))
+        .inner_margin(egui::Margin::symmetric(10, if is_narrow { 1 } else { 6 }))
         .show(ui, |ui| {
             ui.set_min_width(ui.available_width());
             ui.spacing_mut().item_spacing.y = 2.0;
@@ -176,19 +196,21 @@ fn plate(
                     buttons(ui);
                     ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
                         ui.add(egui::Label::new(theme::strong(title).strong()).truncate())
-                            .on_hover_text(doc);
+                            .on_hover_text(if is_narrow { time_hint } else { doc });
+                        if is_narrow && ui.available_width() > LEAST_ERROR {
+                            error_ui(ui);
+                        }
                     });
                 });
             });
-            ui.horizontal(|ui| {
-                ui.spacing_mut().item_spacing.x = 6.0;
-                if !is_narrow {
+            if !is_narrow {
+                ui.horizontal(|ui| {
+                    ui.spacing_mut().item_spacing.x = 6.0;
                     ui.label(RichText::new(time).size(12.0).color(theme::text()))
                         .on_hover_text(time_hint);
                     ui.label(theme::weak("·"));
-                }
-                ui.add(egui::Label::new(RichText::new(error).size(12.0).color(color)).truncate())
-                    .on_hover_text(hint);
-            });
+                    error_ui(ui);
+                });
+            }
         });
 }

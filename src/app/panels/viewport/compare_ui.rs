@@ -74,6 +74,7 @@ pub fn compare_ui(
     }
     labels_ui(
         ui,
+        rect,
         [&compare.name(), &Compare::name_b(state)],
         [side_a, side_b],
         mode == Mode::Difference,

@@ -372,7 +372,8 @@ impl Builder {
                     .first_fault()
                     .filter(|_| has_faces)
                     .map_or_else(nothing, |fault| format!(
-                        "{fault}; fetch or export it again"
+                        "{}; fetch or export it again",
+                        fault.trim_end_matches("; what is there is drawn")
                     ))
             )));
         }

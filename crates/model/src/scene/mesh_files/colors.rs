@@ -35,6 +35,10 @@ impl Shown {
         (Self::Class, "class"),
     ];
 
+    pub fn name(self) -> &'static str {
+        Self::ALL[self as usize].1
+    }
+
     /// What is called `name`; where that is nothing that the cloud has, its color, or else its
     /// intensity.
     pub fn named(name: &str, has_color: bool) -> Self {

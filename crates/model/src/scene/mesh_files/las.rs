@@ -48,15 +48,15 @@ pub fn load(
 }
 
 /// Loads a LAS or LAZ file within a memory budget, in the color that is called `shown`: `color`,
-/// `intensity` or `class`; its own, or else its intensity, by any other name. Its classes are parts, so
-/// that effects can be limited to them.
+/// `intensity` or `class`; by any other name its own, unless that is black everywhere, or else its
+/// intensity or class. Its classes are parts, so that effects can be limited to them.
 ///
 /// # Errors
 /// There is nothing to draw, a limit is exceeded, or loading was canceled.
 pub fn load_shown(
     model: &dyn Source,
     budget: MemoryBudget,
-    shown: &str,
+    name: &str,
     _read: &mut ReadFile,
 ) -> Result<Scene, LoadError> {
     let head = super::head(model, budget, "a LAS file", |head| {
@@ -69,11 +69,11 @@ pub fn load_shown(
     }
     let layout = Layout::of(model, &head)?;
     let has_color = layout.color.is_some();
-    let shown = Shown::named(shown, has_color);
+    let shown = Shown::named(name, has_color);
     let mut builder = Builder::new(Scene::default(), Room::of(budget, model.size()));
     let mut findings = Findings::default();
     let mut nodes = [None; 256];
-    let (mut brightest, mut strongest) = (0, 0);
+    let (mut brightest, mut strongest, mut is_colored) = (0, 0, false);
     let read = layout.each(model, &mut |record| {
         let class = layout.class(record);
         let node = *nodes[class].get_or_insert_with(|| {
@@ -99,6 +99,7 @@ pub fn load_shown(
         point.color = [r, g, b, u16::MAX];
         brightest = brightest.max(r).max(g).max(b);
         strongest = strongest.max(layout.intensity(record));
+        is_colored |= has_color && layout.own_color(record) != [0; 3];
         if is_near(point.position) {
             let part = builder.part(kind)?;
             builder.point(part, point)?;
@@ -109,6 +110,20 @@ pub fn load_shown(
         }
         Ok(())
     })?;
+    if shown == Shown::Color && !is_colored && read > 0 && name != shown.name() {
+        let other = if strongest > 0 {
+            Shown::Intensity
+        } else {
+            Shown::Class
+        };
+        let mut scene = load_shown(model, budget, other.name(), _read)?;
+        let note = format!(
+            "the colors of its points are black; their {} is shown",
+            other.name()
+        );
+        scene.notes.push(note);
+        return Ok(scene);
+    }
     if read < layout.count {
         let count = layout.count;
         findings.fault("what is there is drawn", || match layout.packing {
@@ -132,7 +147,7 @@ pub fn load_shown(
     let notes = Notes::default();
     findings.tell(&notes);
     let mut scene = builder.finish(notes, true, || "it has no points; export it again".into())?;
-    scene.variants = Shown::offered(has_color, strongest > 0, scene.named_nodes.len() > 1);
+    scene.variants = Shown::offered(is_colored, strongest > 0, scene.named_nodes.len() > 1);
     Ok(scene)
 }
 

@@ -112,7 +112,13 @@ pub fn parse_document(json: &[u8], notes: &Notes) -> Result<Document, LoadError>
     let text = container::text(json, notes);
     let none =
         |error: &dyn std::fmt::Display| LoadError::new(format!("it is not a glTF file: {error}"));
-    let value: Value = serde_json::from_str(&text).map_err(|error| none(&error))?;
+    if !text.trim_start().starts_with('{') {
+        return Err(none(
+            &"it begins neither with \"glTF\" nor with the { of JSON; fetch or export it again",
+        ));
+    }
+    let broken = |error| none(&format_args!("its JSON cannot be read: {error}"));
+    let value: Value = serde_json::from_str(&text).map_err(broken)?;
     let Value::Object(mut root) = value else {
         return Err(none(&"its JSON is no object"));
     };
