@@ -70,7 +70,7 @@ fn an_error_names_the_file_and_line_a_person_wrote() {
 fn a_pass_is_read_in_few_files() {
     for (pass, most) in [
         (Pass::RasterSmall(RasterPhase::Depth), 14),
-        (Pass::Resolve, 17),
+        (Pass::Resolve, 18),
     ] {
         let linked = linked(&plain_key(), pass);
         let files = linked.files();
