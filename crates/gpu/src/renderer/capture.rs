@@ -242,7 +242,8 @@ impl Renderer {
         Ok((frame, Some(shown)))
     }
 
-    /// Draws a culled picture once more as another view, for the judge, who asks for the vertices,
+    /// Draws a picture that was culled, or whose points no pass projected, once more as another view,
+    /// for the judge, who asks for the vertices,
     /// clipped triangles and layers of all triangles and for the counts of those that were
     /// rejected. Neither the picture nor what the next one starts from changes.
     async fn redraw_unculled(

@@ -146,8 +146,8 @@ pub struct Tuning {
     /// Layers of glass that are in memory at a time, at least 1 and as far as there is memory: a
     /// picture that has more is drawn in bands of pixels.
     pub glass_layers: u32,
-    /// Points are projected where they are drawn and shaded, where a scene has nothing else; else a
-    /// pass writes the record of each, which the judge reads.
+    /// Points are projected where they are drawn and shaded; else a pass writes the record of each,
+    /// which the judge reads.
     pub projects_points: bool,
     /// Omit what the scene does not need; else keep every path and every branch.
     pub specialized: bool,

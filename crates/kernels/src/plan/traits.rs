@@ -117,10 +117,11 @@ impl StackTraits {
 
     /// Does an effect move corners by their triangle?
     pub fn moves_triangles(&self) -> bool {
-        let hooks = |effect: &Arc<Effect>| Some(effect.hooks.vertex.as_ref()?.needs_triangle);
-        self.effects
+        let mut hooks = self
+            .effects
             .iter()
-            .any(|effect| hooks(effect) == Some(true))
+            .filter_map(|effect| effect.hooks.vertex.as_ref());
+        hooks.any(|hook| hook.needs_triangle)
     }
 
     /// Does an effect finish pixels?

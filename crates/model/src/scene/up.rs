@@ -69,9 +69,9 @@ impl UpAxis {
     /// [`Scene::foot_axis`], and `usual` is the axis of the format.
     ///
     /// The first of these that holds decides: a name says `y-up` or `z-up`; the box lies far away along
-    /// two axes and not along the third, as coordinates of a map do; it is a terrain; the model stands on the plane
-    /// through the origin and rises above it by at least a quarter of its size; it has a foot. Else it
-    /// is `usual`.
+    /// two axes and not along the third, as coordinates of a map do; the model is a terrain; it stands on
+    /// the plane through the origin and rises above it by at least a quarter of its size; it has a foot.
+    /// Else it is `usual`.
     pub fn guessed<'a>(
         bounds: &Bounds,
         names: impl IntoIterator<Item = &'a str>,

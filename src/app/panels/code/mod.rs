@@ -221,7 +221,7 @@ fn text_ui(ui: &mut Ui, open: &mut Open, state: &State) {
         let job = highlight::layout(text.as_str(), &font);
         ui.fonts_mut(|fonts| fonts.layout_job(job))
     };
-    // Each file is scrolled by itself, and begins at its top left.
+    // The text of each file has a scroll position of its own, at first its top left.
     let scroll = ScrollArea::both().id_salt(&open.path).auto_shrink(false);
     scroll.show(ui, |ui| {
         let edit = TextEdit::multiline(&mut open.text)
