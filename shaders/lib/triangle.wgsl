@@ -146,6 +146,13 @@ fn vertex_at(record: vec4u) -> vec2i {
 // Some triangle may need clipping.
 override HAS_CLIPPING: bool = false;
 
+// The snapped vertices of its corners.
+struct CornerRecords {
+    a: vec4u,
+    b: vec4u,
+    c: vec4u,
+}
+
 struct Triangle {
     a: vec4u,
     b: vec4u,

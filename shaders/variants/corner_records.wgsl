@@ -2,7 +2,6 @@
 // Chosen by the scene: projected where no pass writes the records of points.
 //
 //@ declare fn corner_records(draw: u32, id: u32) -> CornerRecords
-//@ declare struct CornerRecords
 // The one of a point, where no pass writes it.
 //@ may declare fn point_record(draw: u32, id: u32) -> vec4u
 
@@ -10,12 +9,6 @@
 // The pass that projects has written them.
 //@ use lib/triangle
 //@ use variants/loads
-
-struct CornerRecords {
-    a: vec4u,
-    b: vec4u,
-    c: vec4u,
-}
 
 // Vertex effects move corners triangle by triangle, so every triangle has three snapped vertices that it shares with no other.
 override UNSHARES_VERTICES: bool = false;
@@ -32,12 +25,6 @@ fn corner_records(draw: u32, id: u32) -> CornerRecords {
 //@ use variants/loads
 //@ use variants/projection
 //@ use variants/draw_records
-
-struct CornerRecords {
-    a: vec4u,
-    b: vec4u,
-    c: vec4u,
-}
 
 // All primitives are points.
 override ONLY_POINTS: bool = false;
